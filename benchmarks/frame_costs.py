@@ -17,7 +17,7 @@ from typing import Any
 from sitl.bridge.dialect import MessageType, message, message_by_id
 from sitl.bridge.frame import encode_v2
 from sitl.bridge.links.inprocess import InProcessLink
-from sitl.bridge.services import files
+from sitl.bridge.services import served_files
 from sitl.bridge.services.ftp import CRC, HEADER, LIST, OPEN_READ, READ
 from sitl.simulation import Simulation, load_core
 from sitl.vehicle.kinds import KINDS
@@ -55,7 +55,12 @@ def kinds(simulation: Simulation) -> Iterator[tuple[str, MessageType, list[bytes
         kind = message_by_id(number)
         name = kind.name
         if name == "FILE_TRANSFER_PROTOCOL":
-            paths = [files.PARAMETERS, files.PARAMETERS + "?withdefaults=1", *files.MISSIONS, "@SYS/uarts.txt"]
+            paths = [
+                served_files.PARAMETERS,
+                served_files.PARAMETERS + "?withdefaults=1",
+                *served_files.MISSIONS,
+                "@SYS/uarts.txt",
+            ]
             paths += ["@META/general.json", "@META/parameters.json", "no/such/file"]
             for title, opcode in (("open", OPEN_READ), ("checksum", CRC)):
                 for path in paths:

@@ -31,7 +31,7 @@ from sitl.errors import SitlError
 from sitl.identify import Identification, identify
 from sitl.identify.drag import SPEED
 from sitl.identify.expected import Copter
-from sitl.identify.plan import write
+from sitl.identify.flight_plan import write
 from sitl.identify.rover.expected import expected
 from sitl.identify.shared import NOISES
 from sitl.logs.dataflash.log import attach

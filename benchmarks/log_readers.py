@@ -28,7 +28,7 @@ import numpy as np
 
 from sitl import Simulation, vehicles
 from sitl.client import Client
-from sitl.identify.plan import write
+from sitl.identify.flight_plan import write
 from sitl.logs.dataflash import bits
 from sitl.logs.dataflash.log import attach
 from sitl.missions import files

@@ -10,7 +10,7 @@ from sitl import Simulation
 from sitl.missions.files import load
 from sitl.missions.fly import fly
 from sitl.missions.twin import plots, twin
-from sitl.missions.twin.flight import Change
+from sitl.missions.twin.log_flight import Change
 from sitl.run.runner import open_dataflash
 
 MISSION = Path(__file__).parents[1] / "missions" / "library" / "copter" / "square.plan"

@@ -25,9 +25,9 @@ from .autopilot.mission.mission import Mission
 from .bridge.channel import ChannelState
 from .bridge.links import LinkFaults
 from .bridge.links.inprocess import InProcessLink
-from .bridge.services.faults import FaultService
+from .bridge.services.failure_injection import FaultService
 from .bridge.wire import fleet as wire
-from .bridge.wire import worlds as wire_worlds
+from .bridge.wire import world_records as wire_worlds
 from .bridge.wire.fleet import STAYS, TO_HEAR, Slot
 from .bridge.wire.port import IN_BYTES, INCOMING, OUT, STATE, Port
 from .core import rng

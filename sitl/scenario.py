@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from . import vehicles, worlds
-from .autopilot.params import files
+from .autopilot.params import parm_files
 from .errors import OptionError, did_you_mean
 from .physics.engines import NATIVE
 from .physics.native import atmosphere
@@ -37,7 +37,7 @@ class Options(TypedDict, total=False):
     home: Home | None
     seed: int | None
     estimator: str
-    params: files.Given | None
+    params: parm_files.Given | None
     world: str | Path | World | None
     start: StartPose | None
     physics: str
@@ -77,7 +77,7 @@ class Scenario:
     home: Home | None = None
     seed: int | None = None
     estimator: str = ESTIMATORS[0]
-    params: files.Given | None = field(default_factory=dict)
+    params: parm_files.Given | None = field(default_factory=dict)
     world: str | Path | World | None = None
     start: StartPose | None = None
     physics: str = NATIVE
@@ -88,9 +88,9 @@ class Scenario:
         if self.estimator not in ESTIMATORS:
             raise OptionError(f"estimator {self.estimator!r} is not known; it is one of {', '.join(ESTIMATORS)}")
         try:
-            object.__setattr__(self, "params", files.given(self.params))
+            object.__setattr__(self, "params", parm_files.given(self.params))
         except (TypeError, ValueError) as error:
-            if isinstance(error, files.ParameterError):
+            if isinstance(error, parm_files.ParameterError):
                 raise
             raise OptionError(f"params = {self.params!r}: values by name or a file of parameters are needed") from None
         faults = (self.faults,) if isinstance(self.faults, str | Failure) else self.faults
@@ -180,7 +180,7 @@ class Scenario:
         else:
             named = airframe.name in vehicles.names() and vehicles.load(airframe.name) is airframe
             frame = airframe.name if named else None
-        of_files = {"params_of_files": True} if isinstance(self.params, files.FileValues) else {}
+        of_files = {"params_of_files": True} if isinstance(self.params, parm_files.FileValues) else {}
         return {
             "vehicle": airframe.kind,
             "frame": frame,
@@ -217,7 +217,7 @@ class Scenario:
             "home": tuple(data["home"]),
             "seed": data["seed"],
             "estimator": data["estimator"],
-            "params": files.FileValues(params) if data.get("params_of_files") else params,
+            "params": parm_files.FileValues(params) if data.get("params_of_files") else params,
             "start": tuple(start) if isinstance(start, list) else start,
             "physics": data["physics"],
             "faults": data.get("faults", ()),

@@ -15,13 +15,13 @@ from .autopilot import boot, shell_parameters
 from .autopilot.aux_functions import AuxFunctions
 from .autopilot.mission.mission import Mission
 from .autopilot.mission.sequencer import Sequencer
-from .autopilot.params import files
+from .autopilot.params import parm_files
 from .autopilot.params.table import Values
 from .bridge.bridge import EPOCH_US, Bridge, BridgeState
 from .bridge.links import Link, LinkFaults
-from .bridge.services.faults import FaultService
+from .bridge.services.failure_injection import FaultService
 from .bridge.services.statustext import EventService, StatusTextService
-from .bridge.services.terrain import TerrainService
+from .bridge.services.terrain_protocol import TerrainService
 from .bridge.wire.fleet import GOES_ON, TO_SERVE
 from .core.compile import Progress
 from .core.constants import TICK_US
@@ -144,11 +144,11 @@ class Simulation:
         self.firmware.table.set_defaults(self.v.autopilot.params)
         self.parameters = Values(self.firmware.table, self.v.autopilot.params)
         label = self.airframe.title
-        unknown = files.apply(self.parameters, self.airframe.parameters, label)
+        unknown = parm_files.apply(self.parameters, self.airframe.parameters, label)
         if unknown:
-            raise AirframeError(f"{label}: {files.unknown(self.kind.name, unknown, self.firmware.table)}")
-        if unknown := files.apply(self.parameters, scenario.parameters):
-            raise files.ParameterError(files.unknown(self.kind.name, unknown, self.firmware.table))
+            raise AirframeError(f"{label}: {parm_files.unknown(self.kind.name, unknown, self.firmware.table)}")
+        if unknown := parm_files.apply(self.parameters, scenario.parameters):
+            raise parm_files.ParameterError(parm_files.unknown(self.kind.name, unknown, self.firmware.table))
         if core is not None and core.kind is not self.kind:
             raise OptionError(f"the core is of a {core.kind.name}, airframe {self.airframe.name} is a {self.kind.name}")
         vehicle = SimulatedVehicle(

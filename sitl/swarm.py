@@ -19,7 +19,7 @@ import numpy as np
 from .bridge.frame import Splitter
 from .bridge.links.inprocess import InProcessLink
 from .bridge.router import Router
-from .bridge.services.parameters import ParameterService
+from .bridge.services.parameter_protocol import ParameterService
 from .core import rng
 from .core.compile import Progress
 from .core.constants import TICK_US

@@ -20,7 +20,7 @@ import gymnasium
 
 from sitl import cli
 from sitl.cli import parser, plugins
-from sitl.cli.commands import COMMANDS
+from sitl.cli.command_list import COMMANDS
 
 FILE = Path(__file__).with_name("public_surface.txt")
 MODULES = (

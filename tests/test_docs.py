@@ -26,7 +26,7 @@ from sitl.agents.tabular.settings import Settings
 from sitl.autopilot.params import docs
 from sitl.bridge.links.faults import OPTIONS
 from sitl.cli import parser
-from sitl.cli.commands import COMMANDS
+from sitl.cli.command_list import COMMANDS
 from sitl.core import compile as compiler
 from sitl.envs.costs import COSTS
 from sitl.envs.observations import OBSERVATIONS
@@ -193,8 +193,8 @@ def test_the_units_of_a_core_are_few_and_named_after_their_place(name: str) -> N
         "autopilot.estimation.update.advance_bank",
         "autopilot.estimation.update.run_second",
         "autopilot.estimation.update.update",
-        f"autopilot.{name}.modes.update.update",
-        f"autopilot.{name}.control.update.update",
+        f"autopilot.{name}.modes.decisions.update",
+        f"autopilot.{name}.control.control_step.update",
         f"vehicle.{name}.advance",
     ]
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sitl import Fleet, Simulation
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client import Client
 from sitl.errors import OptionError
 from sitl.recording.recorder import Recorder

@@ -11,7 +11,7 @@ import gymnasium
 import pytest
 
 import sitl.envs  # noqa: F401 - registers the ids
-from sitl.autopilot.params.files import FileValues
+from sitl.autopilot.params.parm_files import FileValues
 from sitl.errors import SitlError
 from sitl.fleet import Fleet
 from sitl.missions.testing.setup import Defaults, setup

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sitl.bridge.services.setpoints import YAW_IGNORED, YAW_RATE_IGNORED
+from sitl.bridge.services.setpoint_messages import YAW_IGNORED, YAW_RATE_IGNORED
 from sitl.client import Client
 from sitl.client.connection import Connection
 from sitl.client.controls import POSITION_ONLY, VELOCITY_ONLY

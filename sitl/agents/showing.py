@@ -18,7 +18,7 @@ import gymnasium as gym
 from gymnasium.error import DependencyNotInstalled
 
 from sitl.errors import MissingExtra
-from sitl.view import library
+from sitl.view import page_library
 
 from . import environments
 from .algorithms import Policy, policy_of
@@ -211,7 +211,7 @@ def film(run: RunFolder, path: Path, episodes: int, seed: int, speed: float, end
 
 def can_be_on_page(run: RunFolder, **options: Any) -> bool:
     """Whether the environment of a run is one of this package, which know the page, and the page is installed."""
-    return library.is_installed() and _has_window(run, **options)
+    return page_library.is_installed() and _has_window(run, **options)
 
 
 def _has_window(run: RunFolder, **options: Any) -> bool:
@@ -227,7 +227,7 @@ def page(run: RunFolder, episodes: int | None, seed: int, speed: float, ended: E
         AgentError: no model.
         MissingExtra: the library that draws the page is not installed.
     """
-    library.require()
+    page_library.require()
     policy = policy_of(run)
     env = environments.make(run.config, render_mode="human", **options)
     pace = Pace(_step_s(env) / speed)

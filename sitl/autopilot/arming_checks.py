@@ -23,7 +23,7 @@ from .failsafe_checks import is_low, is_used_up
 from .fence import arming as fence_arming
 from .log_events import LogEvent
 from .notes import ChecksFailed
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .params.system import Arming, Compass
 from .radio_checks import RC_MISSING, THROTTLE_FAILSAFE
 from .sensor_calibration import differs, is_received, shown_field

@@ -10,7 +10,7 @@ from ..core.border import RC_INPUTS
 from ..core.kernels import law
 from .events import Event, Events, emit_and_return
 from .mode_switch import DEBOUNCE_US
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .state import Arming, Radio
 
 LOW, MIDDLE, HIGH = 1, 2, 3

@@ -9,7 +9,7 @@ from typing import Any
 
 from .aux_functions import AuxFunction
 from .events import Event
-from .mission.commands import Commands
+from .mission.item_runners import Commands
 from .params.table import Table
 
 

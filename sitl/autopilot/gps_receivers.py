@@ -15,7 +15,7 @@ from ..core.kernels import law
 from ..core.mavlink import GpsFixType
 from ..core.records import Record
 from ..core.vectors import Vec3
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 
 USE_PRIMARY, USE_BEST, BLEND, USE_PRIMARY_IF_3D = 0, 1, 2, 4
 """GPS_AUTO_SWITCH"""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ..core.border import RC_INPUTS, Sensors
 from ..core.kernels import law
 from ..core.scalars import constrain
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .params.radio import RcChannel, RcMap
 from .state import Radio
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 
 from ..core.kernels import law
 from . import radio
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .params.radio import RcMap
 from .params.table import Values
 from .radio import PITCH, ROLL, THROTTLE, YAW

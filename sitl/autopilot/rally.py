@@ -16,7 +16,7 @@ from ..core.vectors import Vec3
 from .events import Event, Row
 from .fence.checks import allows
 from .fence.state import POINTS, FenceState, RallyState
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .state import Estimate, HomeState
 
 _FROM_HOME, _FROM_SEA = 12, 4

@@ -8,7 +8,7 @@ from ..core.border import IMUS_DIFFER, Sensors
 from ..core.kernels import law
 from ..core.records import Record
 from ..core.vectors import Euler, Vec3
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .params.simulation import DELIVERED, Axes, axes
 from .params.system import Ahrs, Compass
 

@@ -26,7 +26,7 @@ from .inertial_ring import InertialRing
 from .landing_target.state import LandingTarget
 from .navigation.state import Nav
 from .optical_flow import OpticalFlow
-from .params.parameters import Parameters
+from .params.firmware_parameters import Parameters
 from .sensor_calibration import Calibrated
 from .vibration import Vibration
 from .visual_odometry import VisualOdometry

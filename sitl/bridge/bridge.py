@@ -19,28 +19,28 @@ from .autopilot_api import Autopilot, Vehicle
 from .channel import Channel, ChannelState
 from .core_link import CoreLink
 from .dialect import MessageType, message, message_by_id
+from .firmware_profile import load
 from .frame import Frame
 from .links.faults import LinkFaults
 from .links.link import Link
 from .listener import Listener
 from .locations import Locations
 from .log_store import LogStore
-from .profile import load
 from .services import all_services
 from .services.command import Entry
-from .services.commands import Grants
-from .services.faults import FaultService
+from .services.command_protocol import Grants
+from .services.failure_injection import FaultService
 from .services.fitted import CARRIED_OUT_BY, run_aux_function, switched
-from .services.mission import MissionService
+from .services.mission_protocol import MissionService
 from .services.outputs import OutputService
-from .services.parameters import ParameterService
+from .services.parameter_protocol import ParameterService
 from .services.senders import SenderService
 from .services.service import Handler, Service
-from .services.setpoints import SetpointService
+from .services.setpoint_messages import SetpointService
 from .services.signing import SigningService
 from .services.statustext import EventService
 from .services.streams import StreamService
-from .services.terrain import TerrainService
+from .services.terrain_protocol import TerrainService
 from .switchboard import Switchboard
 from .telemetry.builder import shell_messages
 from .wire import streams

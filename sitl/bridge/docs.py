@@ -16,7 +16,7 @@ from ..vehicle.kind import Kind
 from ..vehicle.kinds import BUILT_IN, DEFAULT, KINDS
 from .bridge import Bridge
 from .dialect import message
-from .profile import Profile, load
+from .firmware_profile import Profile, load
 from .services import ALL_SERVICES
 from .services.camera import CameraService
 from .services.flight_state import FlightStateService

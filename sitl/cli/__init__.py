@@ -18,7 +18,7 @@ from typing import Any
 from ..errors import SitlError
 from ..version import __version__
 from . import plugins
-from .commands import COMMANDS, WELCOME
+from .command_list import COMMANDS, WELCOME
 from .parser import Parser
 
 GROUP = "sitl.commands"

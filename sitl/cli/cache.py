@@ -14,7 +14,7 @@ from ..core.array_kernels import KERNELS, build_kernels, is_shipped, missing_ker
 from ..core.numba_tuning import summary
 from ..core.shipped.build import Piece, build, pieces
 from ..core.shipped.library import library
-from ..core.shipped.targets import TARGETS, usable
+from ..core.shipped.target_machines import TARGETS, usable
 from ..errors import OptionError
 from .output import add_json_option, print_json
 
@@ -40,7 +40,7 @@ KERNEL_MODULES = (
     "sitl.envs.observations",
     "sitl.envs.parts",
     "sitl.envs.pictures",
-    "sitl.envs.robots.truth",
+    "sitl.envs.robots.true_state",
     "sitl.envs.session",
     "sitl.envs.starts",
     "sitl.envs.targets.gates",
@@ -55,7 +55,7 @@ KERNEL_MODULES = (
     "sitl.identify.rover.courses",
     "sitl.logs.dataflash.derived",
     "sitl.physics.native.traffic",
-    "sitl.physics.native.turtlebot.fleet",
+    "sitl.physics.native.turtlebot.compiled_fleet",
     "sitl.worlds.camera",
     "sitl.worlds.contact",
     "sitl.worlds.planar",
@@ -148,7 +148,7 @@ def entries(kind: Kind) -> tuple[Callable[..., None], ...]:
     """Units that a run of a kind of vehicle calls; a kind without a face on MAVLink is only advanced."""
     if "mavlink" not in kind.parts:
         return (kind.advance,)
-    from ..bridge.profile import load as load_profile
+    from ..bridge.firmware_profile import load as load_profile
 
     units = load_profile(kind.name).core
     return units.run, units.receive
@@ -163,7 +163,7 @@ def all_entries(kind: Kind) -> tuple[Callable[..., None], ...]:
     if kind.pieces is not None:
         found += [kind.pieces.begin, kind.pieces.load, kind.pieces.sense, ranging.aim_sensor, ranging.finish_scan]
     if "mavlink" in kind.parts:
-        from ..bridge.profile import load as load_profile
+        from ..bridge.firmware_profile import load as load_profile
 
         units = load_profile(kind.name).core
         found += [units.transmit, units.run_all]

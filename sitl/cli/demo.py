@@ -12,8 +12,8 @@ import time
 from tqdm import tqdm
 
 from ..errors import MissingExtra
-from ..logs import flight as flights
 from ..logs import plot
+from ..logs import tlog_flight as flights
 from ..run import runner
 from ..simulation import OptionError, Simulation
 from ..vehicle.kinds import KINDS

@@ -15,7 +15,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 
-from ..foreign.betaflight.session import BetaflightSession
+from ..foreign.betaflight.betaflight_session import BetaflightSession
 from ..foreign.choice import Choice, choose
 from ..foreign.slices import SlicedSession
 from ..run import runner

@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ..bridge.services.faults import FaultService
+from ..bridge.services.failure_injection import FaultService
 from ..errors import OptionError
 from ..simulation import Simulation
 from ..vehicle.faults import FORM, LATEST_S, Text

@@ -12,13 +12,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..autopilot.params import files
+from ..autopilot.params import parm_files
 from ..bridge.bridge import EPOCH_US
 from ..bridge.links import Link, TcpServerLink, open_link
 from ..errors import OptionError
 from ..foreign.ardupilot import FASTEST
 from ..foreign.betaflight import configuration
-from ..foreign.betaflight.session import BetaflightSession
+from ..foreign.betaflight.betaflight_session import BetaflightSession
 from ..foreign.choice import ARDUPILOT, BETAFLIGHT, FORMS, NATIVE, PX4, Choice
 from ..foreign.px4 import STATIONS_PORT, programs_port
 from ..foreign.px4_session import Px4Session
@@ -146,8 +146,8 @@ def build_plant(options: argparse.Namespace, choice: Choice) -> LocalPlant:
     if choice.kind == BETAFLIGHT:
         acting: dict[str, float] = configuration.read(options.params)[1]
     else:
-        values = files.load_all(options.params)
-        for text in files.not_read(values):
+        values = parm_files.load_all(options.params)
+        for text in parm_files.not_read(values):
             print(f"sitl: {text}", file=sys.stderr)
         acting = choice.for_physics(values)
     scenario = scenario_of(options, acting)
@@ -189,7 +189,7 @@ def build_session(
     if choice.kind == ARDUPILOT:
         return ArduPilotSession(
             choice, plant, links, instance=options.instance, speedup=speedup or FASTEST,
-            params=files.load_all(options.params), folder=options.autopilot_dir, say=say, tap=tap,
+            params=parm_files.load_all(options.params), folder=options.autopilot_dir, say=say, tap=tap,
             is_relayed_by_slice=is_relayed_by_slice,
         )  # fmt: skip
     if choice.kind == BETAFLIGHT:
@@ -197,7 +197,7 @@ def build_session(
             choice, plant, links, instance=options.instance, speedup=speedup,
             lines=configuration.read(options.params)[0], folder=options.autopilot_dir, say=say, tap=tap,
         )  # fmt: skip
-    theirs = choice.for_autopilot(files.load_all(options.params))
+    theirs = choice.for_autopilot(parm_files.load_all(options.params))
     return Px4Session(
         choice, plant, links, instance=options.instance, speedup=speedup, params=theirs,
         folder=options.autopilot_dir, say=say, tap=tap, is_relayed_by_slice=is_relayed_by_slice,

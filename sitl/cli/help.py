@@ -31,7 +31,7 @@ def show(options: argparse.Namespace) -> int:
     Raises:
         OptionError: there is no such page.
     """
-    from .commands import COMMANDS
+    from .command_list import COMMANDS
 
     found = pages()
     if options.topic is None:

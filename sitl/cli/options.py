@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .. import vehicles
-from ..autopilot.params import files
+from ..autopilot.params import parm_files
 from ..physics.engines import NATIVE
 from ..plants.plant import FORMS
 from ..scenario import DEFAULT_HOME, ESTIMATORS, Home, Scenario, StartPose, checked_home
@@ -140,9 +140,9 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
     airframe = vehicles.load(options.frame or KINDS[vehicle].default_frame)
     check_kind(options.frame, airframe, vehicle)
     airframe = equipped(airframe, getattr(options, "sensors", AS_IT_IS))
-    if isinstance(params, files.FileValues) and not params.is_reported:
+    if isinstance(params, parm_files.FileValues) and not params.is_reported:
         params.is_reported = True
-        for text in files.notes(KINDS[airframe.kind].firmware.table, params):
+        for text in parm_files.notes(KINDS[airframe.kind].firmware.table, params):
             print(f"sitl: {text}", file=sys.stderr)
     return Scenario(
         airframe,
@@ -160,9 +160,9 @@ def scenario_of(options: argparse.Namespace, params: Mapping[str, float] | None 
 
 def build_simulation(options: argparse.Namespace, overrides: Mapping[str, float] | None = None) -> Simulation:
     """The simulation that the options describe; compiles the core with a progress line when it must."""
-    values = files.given(overrides)
+    values = parm_files.given(overrides)
     if options.params:
-        values = values | files.load_all(options.params)
+        values = values | parm_files.load_all(options.params)
     scenario = scenario_of(options, values)
     with CompileProgress() as progress:
         simulation = Simulation(scenario, progress=progress)

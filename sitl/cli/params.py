@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .. import vehicles
-from ..autopilot.params import docs, files
+from ..autopilot.params import docs, parm_files
 from ..autopilot.params.parameter import Parameter, stored
 from ..autopilot.params.table import Values
 from ..errors import OptionError, did_you_mean
@@ -57,7 +57,7 @@ def params(options: argparse.Namespace) -> int:
     table.set_defaults(holder)
     values = Values(table, holder)
     if airframe:
-        files.apply(values, airframe.parameters, airframe.title)
+        parm_files.apply(values, airframe.parameters, airframe.title)
     found = [p for p in table if has_words(p, options.words)]
     if not found:
         known = did_you_mean(options.words[0].upper(), [p.name for p in table]) if len(options.words) == 1 else ""
@@ -68,7 +68,7 @@ def params(options: argparse.Namespace) -> int:
         for p in found:
             print(described(p, values[p.name]))
     else:
-        print(files.dump(values), end="")
+        print(parm_files.dump(values), end="")
     return 0
 
 

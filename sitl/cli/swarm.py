@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
 
-from ..autopilot.params import files
+from ..autopilot.params import parm_files
 from ..bridge.links import LinkAddressError, UdpInLink, UdpOutLink, open_link, parse
 from ..errors import OptionError
 from ..run import runner
@@ -81,7 +81,7 @@ def opened(
         raise OptionError(f"--instance {options.instance}: vehicles of --count {options.count} have ids 1 and up")
     faults = link_faults(options)
     folder = open_folder(options.log_dir)
-    scenario = scenario_of(options, files.load_all(options.params))
+    scenario = scenario_of(options, parm_files.load_all(options.params))
     given = {field.name: getattr(scenario, field.name) for field in fields(scenario) if field.name != "frame"}
     with contextlib.ExitStack() as stack:
         with CompileProgress() as progress:

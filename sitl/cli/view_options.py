@@ -17,7 +17,7 @@ from ..run.pacing import MAX, StoppablePacing
 from ..run.watched import Watched
 from ..simulation import OptionError, Simulation
 from ..swarm import Swarm
-from ..view import library
+from ..view import page_library
 from .options import port
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def wants_view(options: argparse.Namespace) -> bool:
         if given and not wanted:
             raise OptionError(f"--view-{name} needs --view or --view-only")
     if wanted:
-        library.require()
+        page_library.require()
     return wanted
 
 

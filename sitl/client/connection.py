@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..bridge.dialect import MessageType
 from ..bridge.links.inprocess import InProcessLink
-from ..bridge.services.commands import GRANT, RESEED
+from ..bridge.services.command_protocol import GRANT, RESEED
 from ..core.mavlink import MavResult
 from ..errors import LinkLostError
 from ..warp.page import CLOCK_PAGE

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from ..bridge.services.setpoints import (
+from ..bridge.services.setpoint_messages import (
     ACCELERATION_IGNORED,
     POSITION_IGNORED,
     VELOCITY_IGNORED,

@@ -29,7 +29,7 @@ import numpy as np
 
 from .build_work import BuildWork, ProgressLines
 from .code_cache import ENTRY, BuildError, build_lock, cache_folder, drop_old_versions, is_built, load_entry
-from .fingerprint import Reached, fingerprint, reached
+from .fingerprint import Reached, borders, fingerprint, reached
 from .kernels import INLINED, LAWS, UNITS, Unit, jit_disabled
 from .numba_tuning import TRUST, law_options, trust_laws
 from .order import Order
@@ -322,7 +322,7 @@ def _reason(said: str) -> str:
 
 def _weight(unit: Unit) -> float:
     """A guess at the time that it takes to compile [s], from the source that it reaches."""
-    lines = Reached(unit.function, {id(u.function) for u in UNITS.values() if u is not unit}).lines
+    lines = Reached(unit.function, borders(unit)).lines
     return _START_S + sum(len(line) for line in lines) / _BYTES_A_SECOND
 
 

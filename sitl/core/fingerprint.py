@@ -4,16 +4,17 @@
 Numba's own cache looks only at the file of the entry point, so an edit to a law in another file would leave
 stale code. Here the hash covers every function and constant that a unit reaches, to the last law (comments and
 docstrings left out), where the fields lie that these mention, and the versions of the compilers. Other units are a
-border: calling one does not depend on its inside.
+border: calling one depends on the symbol by which it is linked, and not on its inside.
 """
 
 from __future__ import annotations
 
 import hashlib
 import types
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import IntEnum
 from functools import cache
+from types import MappingProxyType
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -95,6 +96,17 @@ def items(
             yield f"{name} = {value.dtype.str}{value.shape}{value.tobytes().hex()}"
 
 
+def borders(unit: Unit) -> dict[int, Unit]:
+    """All other units, by the ids of their functions."""
+    return {id(other.function): other for other in UNITS.values() if other is not unit}
+
+
+def call_of(name: str, unit: Unit) -> str:
+    """The text of a call of a unit, which its caller knows as ``name``: a unit that has moved has another symbol, and
+    machine code that asks for the old one ends the process."""
+    return f"{name} is {unit.symbol} of {unit.integers} integers"
+
+
 def is_record(value: Any) -> TypeGuard[type[Record]]:
     """Whether what a law uses (``items``) is the class of a record, and no function."""
     return isinstance(value, type)
@@ -109,10 +121,10 @@ class Reached:
 
     Args:
         function: a law.
-        units: ids of functions that are a border.
+        units: those that are a border (``borders``).
     """
 
-    def __init__(self, function: Any, units: Container[int] = ()) -> None:
+    def __init__(self, function: Any, units: Mapping[int, Unit] = MappingProxyType({})) -> None:
         self.lines: list[str] = []
         """Of code and constants, in order."""
         self.names: set[str] = set()
@@ -133,7 +145,7 @@ class Reached:
             elif is_record(item[1]):
                 self.records[item[1]] = item[0]
             elif item[0] and id(item[1]) in self._units:
-                self.lines.append(f"unit {item[0]}")
+                self.lines.append(call_of(item[0], self._units[id(item[1])]))
             else:
                 self._walk(item[1])
 
@@ -156,7 +168,7 @@ class Reached:
 def fingerprint(unit: Unit, records: Iterable[type[Record]], toolchain: str) -> str:
     """Hash (20 hex digits) of all that ``unit``'s machine code for ``records`` depends on: also of where the fields lie
     that it mentions, and of no others."""
-    found = Reached(unit.function, {id(u.function) for u in UNITS.values() if u is not unit})
+    found = Reached(unit.function, borders(unit))
     lines = [toolchain, *found.lines, *found.layouts(records)]
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:20]
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from .. import vehicles
-from ..autopilot.params import files
+from ..autopilot.params import parm_files
 from ..autopilot.params.table import Table
 from ..autopilot.shell_parameters import clears_mission
 from ..bridge.links import Link
-from ..bridge.services.faults import FaultService
-from ..bridge.services.mission import MissionService
+from ..bridge.services.failure_injection import FaultService
+from ..bridge.services.mission_protocol import MissionService
 from ..bridge.services.signing import SigningService
 from ..bridge.signing import WINDOW, Signing
 from ..core.compile import Progress
@@ -110,8 +110,8 @@ class Session:
 
     def _parameters(self, table: Table) -> dict[str, float]:
         """Of default files, storage and command line; what the firmware does not take is told and left out."""
-        self._of_files = of_files = files.load_all(self._line.defaults)
-        for note in files.notes(table, of_files):
+        self._of_files = of_files = parm_files.load_all(self._line.defaults)
+        for note in parm_files.notes(table, of_files):
             self._say(note)
         values = {"SIM_WIND_T": 0.0, **of_files}  # ArduPilot's, with less wind near the ground
         values.update(self.storage.parameters)

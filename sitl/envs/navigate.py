@@ -10,7 +10,7 @@ from typing import Any
 
 import gymnasium as gym
 
-from sitl.view import library
+from sitl.view import page_library
 from sitl.worlds import World
 
 from .boxes import GoalConditioned
@@ -54,7 +54,7 @@ class Navigate(gym.Env[Any, Any]):
         self.action_space = session.action.space
         self.render_mode = render_mode
         self._watcher: Watcher | None = None
-        self._is_on_page = render_mode == "human" and library.is_installed()
+        self._is_on_page = render_mode == "human" and page_library.is_installed()
         draws = render_mode is not None and not self._is_on_page
         self._renderer = Renderer(session.robot, session.task) if draws else None
         self._is_begun = False

@@ -15,7 +15,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from sitl.view import library
+from sitl.view import page_library
 
 from .options import EnvOptionError, unknown
 from .page.watchers import Directly, Watcher, opened
@@ -100,7 +100,7 @@ class NavigateVector(OfSubEnvironments):
         self._take_all: Callable[[Any, Any], bool] | None = getattr(session.action, "take", None)
         draws = render_mode == "rgb_array"
         if render_mode == "human":
-            library.require()
+            page_library.require()
         self._watcher: Watcher | None = None
         self._renderers = [Renderer(session.robot, session.task, i) for i in range(num_envs)] if draws else []
 

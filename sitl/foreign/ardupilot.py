@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..autopilot.params.files import text_of
+from ..autopilot.params.parm_files import text_of
 from ..bridge.bridge import EPOCH_US
 from ..core.constants import TICK_HZ
 from ..physics.native.power_on import Home

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..autopilot.params.files import FileValues
+from ..autopilot.params.parm_files import FileValues
 from ..core.code_in_files import REACHED
 from ..errors import OptionError
 from ..vehicle.kinds import KINDS

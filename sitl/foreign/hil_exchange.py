@@ -15,10 +15,10 @@ from ..bridge.hil.protocol import BARO_UPDATED, IMU_UPDATED, LOCKSTEP, MAG_UPDAT
 from ..bridge.hil.sensor import DITHER_BARO, DITHER_MAG, pressure_altitude
 from ..bridge.telemetry.sensors import HighresImu
 from ..bridge.telemetry.units import uint16
+from ..bridge.wire.dialect_rows import PAYLOAD_MAX
 from ..bridge.wire.frames import FRAME_MAX, Sender, copy_payload, find, seal
 from ..bridge.wire.message import Message, consecutive
 from ..bridge.wire.port import PAYLOAD_BYTES
-from ..bridge.wire.tables import PAYLOAD_MAX
 from ..core.array_kernels import Kernel
 from ..core.border import Actuators, Sensors
 from ..core.kernels import law

@@ -16,7 +16,7 @@ from ..core.constants import GRAVITY, TICK_HZ
 from ..core.elementary import hypot
 from ..core.sums import products
 from ..vehicles import Airframe, CopterAirframe
-from ..vehicles.properties.copter import THRUST_MOMENTUM
+from ..vehicles.properties.multicopter import THRUST_MOMENTUM
 
 AIR_DENSITY = 1.225
 """[kg/m^3]"""

@@ -11,7 +11,7 @@ import math
 from ..core.constants import TICK_HZ
 from ..core.elementary import tan
 from ..vehicles import RoverAirframe
-from ..vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ..vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, STEERING_SKID
 
 ACKERMANN, DIFFERENTIAL = "gz_rover_ackermann", "gz_rover_differential"
 """PX4_SIM_MODEL: airframes of PX4's own, without their simulator."""

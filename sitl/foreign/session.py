@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from ..autopilot.params.files import text_of
+from ..autopilot.params.parm_files import text_of
 from ..bridge.links.link import Link
 from ..plants.json_link import PORT
 from ..plants.local import LocalPlant
@@ -18,7 +18,7 @@ from .json_host import JsonHost
 from .process import HOST, AutopilotProcess, free_tcp_run
 from .relay import Relay
 from .slices import SlicedSession
-from .wind import Wind
+from .wind_parameters import Wind
 
 Say = Callable[[str], None]
 Tap = Callable[[bytes], None]

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .estimate import Estimate
-    from .flight import FlightLog, IdentifyError
     from .identification import Identification, identify
+    from .log_streams import FlightLog, IdentifyError
 
 __all__ = ["Estimate", "FlightLog", "Identification", "IdentifyError", "identify"]
 
 _MODULES = {
     "Estimate": "estimate",
-    "FlightLog": "flight",
+    "FlightLog": "log_streams",
     "Identification": "identification",
-    "IdentifyError": "flight",
+    "IdentifyError": "log_streams",
     "identify": "identification",
 }
 

@@ -14,8 +14,8 @@ import numpy as np
 from ..autopilot.copter.control.frames import FRAMES
 from ..logs.dataflash import motors
 from .estimate import NORMAL_95, Estimate, Sought
-from .flight import FlightLog
 from .hover import hovers, mean
+from .log_streams import FlightLog
 
 Array = np.ndarray[Any, Any]
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .estimate import NORMAL_95, Estimate, Sought
-from .flight import FlightLog
+from .log_streams import FlightLog
 from .regression import GUSTS_S, least_squares
 
 _SHAPE = 0.03

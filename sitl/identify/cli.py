@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     if options.out is not None and options.out.suffix != ".toml":
         raise OptionError(f"--out {str(options.out)!r} does not end in .toml, by which --frame tells such files")
     if options.plan is not None:
-        from .plan import advice, write
+        from .flight_plan import advice, write
 
         speed = _speed(options.vehicle, options.speed)
         write(options.plan, _home(options.home), options.vehicle, speed)
@@ -79,9 +79,9 @@ def _home(text: str | None) -> tuple[float, float]:
 
 def _identify(logs: Sequence[Path], mass: float | None, out: Path | None, above: float | None) -> None:
     try:
-        from .flight import ABOVE_M
         from .identification import identify
-        from .telemetry import HOW
+        from .log_streams import ABOVE_M
+        from .required_messages import HOW
     except ModuleNotFoundError as error:
         if error.name != "scipy":
             raise

@@ -14,7 +14,7 @@ from ..logs.dataflash import motors
 from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
 from .expected import Conditions, Copter, exponent, slope_of
-from .flight import FlightLog, IdentifyError
+from .log_streams import FlightLog, IdentifyError
 from .model import Model, outflow
 from .shared import Found, battery, kept
 

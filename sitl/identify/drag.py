@@ -16,8 +16,8 @@ import numpy as np
 from ..core.constants import GRAVITY
 from ..physics.native.atmosphere import density
 from .estimate import NORMAL_95, Estimate, Sought
-from .flight import FlightLog
-from .motion import Motion, motion
+from .estimated_motion import Motion, motion
+from .log_streams import FlightLog
 from .regression import GUSTS_S, Fit, least_squares
 from .signals import means
 

@@ -14,7 +14,7 @@ from ..autopilot.copter.control.thrust_curve import air_density_ratio, command_f
 from ..core.constants import GRAVITY
 from ..physics.native.atmosphere import density
 from ..vehicles import CopterAirframe
-from ..vehicles.properties.copter import THRUST_MOMENTUM
+from ..vehicles.properties.multicopter import THRUST_MOMENTUM
 
 Array = np.ndarray[Any, Any]
 

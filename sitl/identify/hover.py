@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.constants import GRAVITY
 from .estimate import NORMAL_95, Estimate, Sought
-from .flight import FlightLog
+from .log_streams import FlightLog
 from .outputs import controls
 from .regression import GUSTS_S, Fit, least_squares
 from .signals import means

@@ -15,16 +15,16 @@ from .. import vehicles
 from ..core.whole_file import write_whole
 from ..logs.dataflash.columns import Progress
 from ..vehicles import Airframe
-from .copter import estimates
 from .copter_airframe import model_of
+from .copter_properties import estimates
 from .estimate import Begins, Estimate, silent
-from .flight import ABOVE_M, FlightLog, IdentifyError
+from .log_streams import ABOVE_M, FlightLog, IdentifyError
 from .model import Model
+from .required_messages import judged
 from .rover.airframe import RoverModel
 from .rover.airframe import model_of as rover_model_of
 from .rover.estimates import estimates as rover_estimates
 from .rover.sought import LOAD
-from .telemetry import judged
 
 _LEAST_EFFICIENCY = 0.1
 """Of motors with gears: with less a mass is a slip of the pen."""

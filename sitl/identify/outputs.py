@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..logs.dataflash import motors
-from .flight import FlightLog
+from .log_streams import FlightLog
 from .signals import Span
 
 Array = np.ndarray[Any, Any]

@@ -25,9 +25,9 @@ import numpy as np
 
 from ..core.constants import GRAVITY
 from .estimate import NORMAL_95, Begins, Estimate, Sought, silent
-from .flight import FlightLog
+from .estimated_motion import motion
+from .log_streams import FlightLog
 from .moments import WEAK, Block, JointFit, fit
-from .motion import motion
 from .outputs import resolution, saturated
 from .signals import means, spectrum, within
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .estimate import NORMAL_95, Estimate, Sought
-from .flight import FlightLog
+from .log_streams import FlightLog
 from .signals import within
 
 Array = np.ndarray[Any, Any]

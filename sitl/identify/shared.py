@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 
 from ..autopilot.params.table import Table
 from .estimate import Estimate
-from .flight import FlightLog
+from .log_streams import FlightLog
 
 NOISES = (
     "gyro_noise_density",

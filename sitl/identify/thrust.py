@@ -17,10 +17,10 @@ import numpy as np
 
 from ..core.constants import GRAVITY
 from .estimate import NORMAL_95, Estimate, Sought
+from .estimated_motion import motion
 from .expected import exponent, slope_of
-from .flight import FlightLog
+from .log_streams import FlightLog
 from .moments import WEAK, Block, fit
-from .motion import motion
 from .outputs import saturated
 from .signals import means, spectrum, within
 

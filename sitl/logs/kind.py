@@ -11,7 +11,7 @@ from ..vehicle.kinds import KINDS
 
 if TYPE_CHECKING:
     from .dataflash.formats import Message
-    from .flight import Flight
+    from .tlog_flight import Flight
 
 
 @dataclass(frozen=True)

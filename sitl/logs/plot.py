@@ -12,9 +12,9 @@ import numpy as np
 from ..core.whole_file import whole_file
 from ..errors import MissingExtra
 from ..vehicle.kinds import DEFAULT
-from .flight import Flight
 from .kind import logs_of
 from .tlog import LogError
+from .tlog_flight import Flight
 
 _TOGETHER_M = 1.0
 """Items that are reached so near to each other share a label in the plan view [m]."""

@@ -13,7 +13,7 @@ from sitl.cli.view_options import open_browser
 from sitl.errors import OptionError
 from sitl.recording.entries import RecordingError
 from sitl.run.stop_signals import StopSignals
-from sitl.view import library
+from sitl.view import page_library
 from sitl.view.flight_page import FlightPage, Series
 from sitl.view.flights import Flight, of_track
 
@@ -56,7 +56,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Show the flights until Ctrl-C, or write the file."""
-    library.require()
+    page_library.require()
     try:
         with CompileProgress() as progress:
             found = [flight.read(path, options.system, progress) for path in options.flights]

@@ -14,8 +14,8 @@ import struct
 import time
 from collections.abc import Callable
 
+from ..bridge.ardupilot_json.answer import Motion
 from ..bridge.ardupilot_json.autopilot_end import LONGEST_S, AutopilotEnd
-from ..bridge.ardupilot_json.motion import Motion
 from ..core import rng
 from ..core.algebra import multiply, rotate
 from ..core.constants import GRAVITY, TICK_S, TICK_US

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Unpack
 
 from ..autopilot import boot
-from ..autopilot.params import files
+from ..autopilot.params import parm_files
 from ..autopilot.params.table import Values
 from ..core import rng
 from ..core.compile import Progress
@@ -230,8 +230,8 @@ def stand_alone(
     v, table = kind.record.of(fleet, 0), kind.firmware.table
     table.set_defaults(v.autopilot.params)
     values = Values(table, v.autopilot.params)
-    files.apply(values, airframe.parameters, airframe.title)
-    files.apply(values, scenario.parameters)
+    parm_files.apply(values, airframe.parameters, airframe.title)
+    parm_files.apply(values, scenario.parameters)
     vehicle = SimulatedVehicle(kind, airframe, fleet, 0, v, RecordReader(fleet, 0), lambda: None)
     plant = LocalPlant(vehicle, scenario, None, progress)
     restart(plant)

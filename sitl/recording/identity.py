@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ..bridge.services.faults import FaultService
+from ..bridge.services.failure_injection import FaultService
 from ..core import compile as compiler
 from ..core.fingerprint import reached
 from ..physics.engines import NATIVE

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..physics.engine import EngineError
 from ..physics.native.turtlebot.state import Turtlebot
-from ..physics.pybullet.turtlebot import BulletTurtlebot
+from ..physics.pybullet.diff_drive import BulletTurtlebot
 from ..worlds import World
 from ..worlds.shapes import to_heading, to_ned
 from .native import Pose, Turtlebots, full_pose, ticks_in

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from ..core.array_kernels import NarrowTable
 from ..core.kernels import jit_disabled
 from ..core.records import Records
-from ..physics.native.turtlebot.fleet import Orders, advance, advance_apart
+from ..physics.native.turtlebot.compiled_fleet import Orders, advance, advance_apart
 from ..physics.native.turtlebot.init import place
 from ..physics.native.turtlebot.scan import Beams
 from ..physics.native.turtlebot.state import TICK_US

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..autopilot.copter.displaced_targets import move as move_firmware
 from ..autopilot.copter.firmware import FIRMWARE, update
-from ..autopilot.copter.move import move as move_firmware
 from ..autopilot.copter.state import Autopilot
 from ..autopilot.copter.trim import is_flying, total_thrust
 from ..autopilot.copter.trim import trim as trim_firmware
@@ -28,7 +28,7 @@ from ..physics.native.copter.prepare import prepare
 from ..physics.native.copter.state import ALL_DRIVEN, DRIVEN, Physics
 from ..physics.native.copter.step import step
 from ..physics.native.copter.trim import balance, command_speeds
-from ..physics.native.move import show_field
+from ..physics.native.displaced_body import show_field
 from ..physics.native.records import GROUND_AIRBORNE, IMUS
 from ..physics.native.traffic import Mover
 from ..vehicles import CopterAirframe
@@ -221,7 +221,7 @@ COPTER = Kind(
     flies=True,
     has_reversible_outputs=False,
     motor_output=motor_output,
-    engines={"pybullet": "sitl.physics.pybullet.engine:BulletEngine", "jsbsim": "sitl.physics.jsbsim.copter:make"},
+    engines={"pybullet": "sitl.physics.pybullet.engine:BulletEngine", "jsbsim": "sitl.physics.jsbsim.rotors:make"},
     demo_script="mavsdk_mission.py",
     programs={"ardupilot": "arducopter", "px4": "px4"},
     # It arms with a gyro sample each 1 / 1.8 of its loop, and gets one a step: 720 at 400 loops a second.
@@ -236,8 +236,8 @@ COPTER = Kind(
     ),
     parts={
         "mavlink": "sitl.bridge.copter.profile:PROFILE",
-        "logs": "sitl.logs.dataflash.copter:LOGS",
+        "logs": "sitl.logs.dataflash.copter_messages:LOGS",
         "environments": "sitl.envs.robots.copter:ROBOT",
-        "view": "sitl.view.copter:VIEW",
+        "view": "sitl.view.copter_model:VIEW",
     },
 )  # fmt: skip

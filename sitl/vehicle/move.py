@@ -3,7 +3,8 @@
 
 Body, estimator, controllers, home and origin move as one: what the autopilot believes of the vehicle is as true as it
 was. Time, modes, biases and what is learnt of them stay. The laws here put together what each subsystem has for itself
-(``physics.native.move``, ``autopilot.move``, ``autopilot.estimation.move``, ``autopilot.copter.move`` ...).
+(``physics.native.displaced_body``, ``autopilot.displacement``, ``autopilot.estimation.displaced_filter``,
+``autopilot.copter.displaced_targets`` ...).
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ..core.memory import record_at
 from ..core.records import Record
 from ..core.scalars import wrap_pi
 from ..core.vectors import Vec2, Vec3
-from ..physics.native.move import is_inside, move_physics, set_wind
+from ..physics.native.displaced_body import is_inside, move_physics, set_wind
 from ..physics.native.ranging import Ranging, list_around, look_again
 from ..physics.native.records import Place
 from ..physics.native.tick import Clock

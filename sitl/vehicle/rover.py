@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..autopilot.rover.displaced_targets import move as move_firmware
 from ..autopilot.rover.firmware import FIRMWARE, update
-from ..autopilot.rover.move import move as move_firmware
 from ..autopilot.rover.parameters import Simulated
 from ..autopilot.rover.state import Autopilot
 from ..core.algebra import euler_of
@@ -21,7 +21,7 @@ from ..core.mavlink import MavType
 from ..core.memory import record_at
 from ..core.records import Floats
 from ..core.vectors import Vec2
-from ..physics.native.move import show_field
+from ..physics.native.displaced_body import show_field
 from ..physics.native.rover import pieces
 from ..physics.native.rover.drive import commanded
 from ..physics.native.rover.init import init
@@ -31,7 +31,7 @@ from ..physics.native.rover.state import Physics, SteeringServo
 from ..physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, step
 from ..physics.native.traffic import Mover
 from ..vehicles import RoverAirframe
-from ..vehicles.properties.rover import STEERING_SKID
+from ..vehicles.properties.ground_vehicle import STEERING_SKID
 from . import sim_parameters
 from .advance import advance_ticks, fly_tick
 from .kind import Kind
@@ -190,15 +190,18 @@ ROVER = Kind(
     flies=False,
     has_reversible_outputs=True,
     motor_output=motor_output,
-    engines={"pybullet": "sitl.physics.pybullet.rover:BulletRover", "jsbsim": "sitl.physics.jsbsim.rover:make"},
+    engines={
+        "pybullet": "sitl.physics.pybullet.wheeled_rover:BulletRover",
+        "jsbsim": "sitl.physics.jsbsim.drivetrain:make",
+    },
     demo_script="mavsdk_rover.py",
     programs={"ardupilot": "ardurover", "px4": "px4"},
     ardupilot_models={"rover": "ardupilot_rover", "rover-skid": "skid_rover", "calibration": "calibration_rover"},
     flight_parameters=("WP_", "CRUISE_SPEED", "TURN_", "RTL_", "MIS_", "LOIT_", "CIRC_", "GUID_"),
     parts={
         "mavlink": "sitl.bridge.rover.profile:PROFILE",
-        "logs": "sitl.logs.dataflash.rover:LOGS",
+        "logs": "sitl.logs.dataflash.rover_messages:LOGS",
         "environments": "sitl.envs.robots.rover:ROBOT",
-        "view": "sitl.view.rover:VIEW",
+        "view": "sitl.view.rover_model:VIEW",
     },
 )

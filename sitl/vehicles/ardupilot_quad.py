@@ -13,7 +13,7 @@ from ..core.constants import GRAVITY
 from ..core.elementary import cos, sin, tan
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
-from .properties.copter import THRUST_MOMENTUM
+from .properties.multicopter import THRUST_MOMENTUM
 
 MASS = 3.0  # [kg]
 ARM = 0.35  # [m] rotors from the centre

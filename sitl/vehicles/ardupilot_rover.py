@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from . import sensor_sets
-from .properties.rover import STEERING_TURNING_CIRCLE
+from .properties.ground_vehicle import STEERING_TURNING_CIRCLE
 from .rover_airframe import RoverAirframe
 
 SPEED = 20.0  # [m/s]

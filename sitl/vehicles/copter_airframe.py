@@ -12,7 +12,7 @@ import numpy as np
 
 from ..deprecation import renamed
 from .airframe import Airframe, AirframeError
-from .properties.copter import MODEL, ROTORS_MAX, Hubs, Properties
+from .properties.multicopter import MODEL, ROTORS_MAX, Hubs, Properties
 from .properties.property import properties
 
 CCW, CW = 1.0, -1.0

@@ -11,7 +11,7 @@ import math
 
 from . import sensor_sets
 from .copter_airframe import CCW, CW, CopterAirframe, Rotor
-from .properties.copter import THRUST_SPEED_SQUARED
+from .properties.multicopter import THRUST_SPEED_SQUARED
 
 REACH = 0.141  # [m] rotors from the centre along x and y [model]
 ABOVE = -0.030  # [m] rotors 3 cm above the centre [model]

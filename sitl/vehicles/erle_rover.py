@@ -11,7 +11,7 @@ import math
 
 from ..core.constants import GRAVITY
 from . import sensor_sets
-from .properties.rover import STEERING_FRONT_WHEELS
+from .properties.ground_vehicle import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
 
 MASS = 882.0  # [kg] chassis 800, wheels 4 x 20, steering blocks 2 x 1 [model]

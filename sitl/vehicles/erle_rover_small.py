@@ -11,7 +11,7 @@ import math
 
 from ..core.constants import GRAVITY
 from . import sensor_sets
-from .properties.rover import STEERING_FRONT_WHEELS
+from .properties.ground_vehicle import STEERING_FRONT_WHEELS
 from .rover_airframe import RoverAirframe
 
 MASS = 3.0  # [kg] a 1:10 car with Erle-Brain and lidar; the model's 882 kg cannot be meant [estimate]

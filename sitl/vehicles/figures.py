@@ -6,8 +6,8 @@ from __future__ import annotations
 import sys
 
 from ..deprecation import warn
-from .properties import body, copter, rover
+from .properties import body, ground_vehicle, multicopter
 
 warn("sitl.vehicles.figures", since="0.2", removed_in="0.4", instead="sitl.vehicles.properties")
-for _module in (body, copter, rover):
+for _module in (body, multicopter, ground_vehicle):
     sys.modules[_module.__name__.replace("properties", "figures")] = _module

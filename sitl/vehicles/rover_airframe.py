@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from ..deprecation import renamed
 from .airframe import Airframe
+from .properties.ground_vehicle import MODEL, Properties
 from .properties.property import properties
-from .properties.rover import MODEL, Properties
 
 
 @renamed("figures", "properties", since="0.2", removed_in="0.4")

@@ -8,7 +8,7 @@ All values are this project's estimates; [like] from what is published of such r
 from __future__ import annotations
 
 from . import sensor_sets
-from .properties.rover import STEERING_SKID
+from .properties.ground_vehicle import STEERING_SKID
 from .rover_airframe import RoverAirframe
 
 AIRFRAME = RoverAirframe(

@@ -14,7 +14,7 @@ from ..simulation import Simulation
 from ..vehicle.faults import FORM
 from .frame import Stage
 from .incoming import check_value
-from .pilot import Pilot
+from .pilot_link import Pilot
 from .sticks import Sticks
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5", "10", "50", "200", MAX)

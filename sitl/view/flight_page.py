@@ -14,7 +14,7 @@ import numpy as np
 
 from ..core.whole_file import write_whole
 from ..run.playback import Player
-from . import horizon, library
+from . import horizon, page_library
 from .cameras import FREE, VIEWS, Cameras
 from .colours import css, of_ends, of_mode
 from .flights import Flight, Floats
@@ -108,10 +108,10 @@ class FlightPage(Guard):
     """
 
     def __init__(self, flights: Sequence[Flight], differences: Series | None = None, port: int = 0) -> None:
-        library.require()
+        page_library.require()
         self.flights = flights
         title = flights[0].name if len(flights) == 1 else f"{len(flights)} flights"
-        self.server = library.serve(LOCAL, free_port(port), title)
+        self.server = page_library.serve(LOCAL, free_port(port), title)
         self.address = f"http://{LOCAL}:{self.server.get_port()}"
         self.scene = FlightScene(self.server, flights)
         self.cameras = Cameras(self.scene.stage, flights[0].shape.size, FREE)
@@ -227,7 +227,7 @@ class FlightPage(Guard):
     def close(self) -> None:
         """Close the page."""
         self.player.close()
-        library.stop(self.server)
+        page_library.stop(self.server)
 
 
 def band(flights: Sequence[Flight], begin: float, end: float) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import SitlError
-from . import library
+from . import page_library
 
 
 class Guard:
@@ -39,4 +39,4 @@ class Guard:
     def notify(self, text: str, client: Any = None, title: str = "Not done") -> None:
         """Show a note in one browser, or in all (None)."""
         for each in [client] if client is not None else self.server.get_clients().values():
-            library.note(each, text, title)
+            page_library.note(each, text, title)

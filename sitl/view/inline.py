@@ -7,7 +7,7 @@ from __future__ import annotations
 from ..fleet import Fleet
 from ..run.watched import Watched
 from ..simulation import Simulation
-from .fleet import FleetPage
+from .fleet_page import FleetPage
 from .live_page import LivePage
 from .page import Page
 

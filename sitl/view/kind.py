@@ -12,7 +12,7 @@ from ..vehicle.kind import Kind, MissingPartError
 from ..vehicle.kinds import KINDS
 from ..vehicles.airframe import Airframe, apply
 from ..vehicles.turtlebot import TurtlebotAirframe
-from . import turtlebot
+from . import turtlebot_model
 from .shape import Shape, plain
 
 
@@ -50,7 +50,7 @@ PLAIN = KindView(_outline, lambda v: Motion(), lambda v: None)
 def shape_of(airframe: Airframe) -> Shape:
     """What an airframe looks like, whatever flies it."""
     if isinstance(airframe, TurtlebotAirframe):
-        return turtlebot.shape(airframe)
+        return turtlebot_model.shape(airframe)
     kind = KINDS[airframe.kind]
     v = kind.record.of(kind.record.fleet(1), 0)
     apply(airframe, v)

@@ -14,7 +14,7 @@ from .company import CompanySource
 from .controls import Controls, ParameterControls, Weather
 from .live import LiveSource
 from .page import Page
-from .pilot import Pilot
+from .pilot_link import Pilot
 
 Request = Callable[[], None]
 MOST_REQUESTS = 64

@@ -14,7 +14,7 @@ import traceback
 from typing import Any, cast
 
 from ..errors import SitlError
-from . import library
+from . import page_library
 from .cameras import VIEWS, Cameras
 from .frame import CompanyOfSources, Frame, Source
 from .guard import Guard
@@ -48,9 +48,9 @@ class Page(Guard):
     """
 
     def __init__(self, source: Source, port: int = 0) -> None:
-        library.require()
+        page_library.require()
         self.source = source
-        self.server = library.serve(LOCAL, free_port(port), source.stage.title)
+        self.server = page_library.serve(LOCAL, free_port(port), source.stage.title)
         self.port = int(self.server.get_port())
         self.address = f"http://{LOCAL}:{self.port}"
         self.frame: Frame | None = None
@@ -175,7 +175,7 @@ class Page(Guard):
             self._closed = True
             self._filled.notify_all()
         self._thread.join(timeout=5.0)
-        library.stop(self.server)
+        page_library.stop(self.server)
 
 
 def free_port(port: int) -> int:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..bridge.dialect import message
-from ..bridge.profile import Profile
+from ..bridge.firmware_profile import Profile
 from ..bridge.telemetry.plain import build
 from ..bridge.wire.choose import message_of
 from ..bridge.wire.port import Port

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sitl.agents.errors import AgentError
-from sitl.agents.report.compare import compare
+from sitl.agents.report.comparison import compare
 from sitl.agents.report.document import BLOCK, Document
 from sitl.agents.report.group import Group
 from sitl.agents.report.paper import SINGLE_CHANGES, STEP_TIMES, VARIANTS

@@ -15,18 +15,18 @@ import pytest
 import sitl.autopilot
 from sitl.autopilot import events as own
 from sitl.autopilot.arming_checks import ARMED
-from sitl.autopilot.copter.events import EVENTS as COPTER
+from sitl.autopilot.copter.event_list import EVENTS as COPTER
 from sitl.autopilot.events import Event, err, ev, register_event, with_registered
 from sitl.autopilot.notes import EventNote, Text
-from sitl.autopilot.rover.events import EVENTS as ROVER
-from sitl.bridge import profile
+from sitl.autopilot.rover.event_list import EVENTS as ROVER
+from sitl.bridge import firmware_profile
 from sitl.bridge.dialect import message_by_id
 from sitl.core.extensions import ExtensionError
 from sitl.core.fingerprint import _referenced
 from sitl.core.mavlink import MavSeverity
 from sitl.logs.dataflash import formats
 from sitl.logs.dataflash.common import EVENT_MESSAGES
-from sitl.logs.dataflash.events import EventEncoder
+from sitl.logs.dataflash.event_messages import EventEncoder
 from sitl.vehicle.kinds import KINDS
 
 LISTS = {"copter": COPTER, "rover": ROVER}
@@ -43,7 +43,7 @@ def declared() -> Iterator[tuple[str, str, Event]]:
 
 def emitted(firmware: str) -> set[Event]:
     """Events that laws of the firmware's core name."""
-    core = profile.load(firmware).core
+    core = firmware_profile.load(firmware).core
     waiting: list[Any] = [core.receive, core.transmit, core.run]
     seen: set[int] = set()
     found: set[Event] = set()

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot import arming_checks, battery, radio_checks
 from sitl.autopilot.arming_checks import BATTERY_UNHEALTHY, COMPASSES, battery_checks, compass_checks
-from sitl.autopilot.copter.events import EVENTS
+from sitl.autopilot.copter.event_list import EVENTS
 from sitl.autopilot.events import Events
 from sitl.autopilot.failsafe_checks import (
     BATTERY_MISSING,
@@ -19,7 +19,7 @@ from sitl.autopilot.failsafe_checks import (
     watch_monitor,
 )
 from sitl.autopilot.notes import Text
-from sitl.autopilot.params.parameters import Parameters
+from sitl.autopilot.params.firmware_parameters import Parameters
 from sitl.autopilot.params.simulation import DELIVERED
 from sitl.autopilot.params.system import Battery, Compass, Failsafes
 from sitl.autopilot.state import BatteryState, Estimate, Failsafe, Sensors

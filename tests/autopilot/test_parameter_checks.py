@@ -10,7 +10,7 @@ import pytest
 
 from sitl.autopilot.arming_checks import ArmingMethod
 from sitl.autopilot.copter import arming as copter_arming
-from sitl.autopilot.copter.events import EVENTS
+from sitl.autopilot.copter.event_list import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission

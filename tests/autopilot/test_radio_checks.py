@@ -9,7 +9,7 @@ import pytest
 
 from sitl.autopilot.arming_checks import ArmingMethod, refusal
 from sitl.autopilot.copter import arming as copter_arming
-from sitl.autopilot.copter.events import EVENTS
+from sitl.autopilot.copter.event_list import EVENTS
 from sitl.autopilot.copter.parameters import TABLE as COPTER
 from sitl.autopilot.notes import ChecksFailed
 from sitl.autopilot.parameter_checks import Found

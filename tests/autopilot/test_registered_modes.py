@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 LISTED = """
-from sitl.autopilot.copter.modes.table import NAMES, is_known, run, start
+from sitl.autopilot.copter.modes.mode_list import NAMES, is_known, run, start
 from sitl.bridge.copter.profile import PROFILE
 import spin_mode
 

@@ -10,7 +10,7 @@ import pytest
 
 from sitl.autopilot import smart_rtl_path as srtl
 from sitl.autopilot.params.system import SmartRtl
-from sitl.autopilot.rover.modes.update import keep_path
+from sitl.autopilot.rover.modes.decisions import keep_path
 from sitl.autopilot.smart_rtl_path import PATH_LOST
 from sitl.autopilot.state import PathState
 from sitl.core.vectors import Vec3

@@ -13,17 +13,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from benchmarks.recorded.pilot import Pilot, items
-from sitl.autopilot.copter.modes.table import is_known as is_copter_mode
+from sitl.autopilot.copter.modes.mode_list import is_known as is_copter_mode
 from sitl.autopilot.rover.firmware import FIRMWARE as ROVER
 from sitl.autopilot.rover.modes.auto import AUTO
 from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.hold import HOLD
+from sitl.autopilot.rover.modes.mode_list import is_known as is_rover_mode
 from sitl.autopilot.rover.modes.rtl import RTL
 from sitl.autopilot.rover.modes.smart_rtl import SMART_RTL
-from sitl.autopilot.rover.modes.table import is_known as is_rover_mode
 from sitl.bridge import dialect
-from sitl.bridge.copter.commands import COMMANDS as COPTER_COMMANDS
-from sitl.bridge.rover.commands import COMMANDS as ROVER_COMMANDS
+from sitl.bridge.copter.vehicle_commands import COMMANDS as COPTER_COMMANDS
+from sitl.bridge.rover.vehicle_commands import COMMANDS as ROVER_COMMANDS
 from sitl.client.endpoint import Endpoint
 from sitl.core.records import as_dict
 from sitl.simulation import Simulation, Snapshot

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.bridge import Bridge
-from sitl.bridge.copter.commands import COMMANDS as OF_COPTERS
+from sitl.bridge.copter.vehicle_commands import COMMANDS as OF_COPTERS
 from sitl.bridge.dialect import MessageType, message, message_by_id
 from sitl.bridge.frame import encode_v1, encode_v2
-from sitl.bridge.rover.commands import COMMANDS as OF_ROVERS
+from sitl.bridge.rover.vehicle_commands import COMMANDS as OF_ROVERS
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 HANDLED = sorted(Bench().bridge._handlers)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from sitl.autopilot import events
 from sitl.autopilot.arming_checks import ARMED, DISARMED
-from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
+from sitl.autopilot.estimation.estimator_events import EKF_ORIGIN_SET
 from sitl.autopilot.events import EVENT_RING
 from sitl.autopilot.hits import HIT_GROUND
 from sitl.autopilot.modes import MODE_CHANGED

@@ -13,8 +13,8 @@ import pytest
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services.ftp import FtpService
-from sitl.bridge.services.mission import MissionService
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.mission_protocol import MissionService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.core.mavlink import MavMissionType
 from tests.bridge.fakes import Bench
 from tests.bridge.test_parameters import ACK, BURST, NAK, OPEN, READ, fetch, request, unpack

@@ -11,7 +11,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.bridge.services.mission import MissionService
+from sitl.bridge.services.mission_protocol import MissionService
 from tests.bridge.fakes import HOME, Bench, Client
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import pytest
 
+from sitl.autopilot.copter.modes import mode_list as copter_table
 from sitl.autopilot.copter.modes import set_mode as copter_set_mode
-from sitl.autopilot.copter.modes import table as copter_table
 from sitl.autopilot.modes import ModeReason, ModeResult
+from sitl.autopilot.rover.modes import mode_list as rover_table
 from sitl.autopilot.rover.modes import set_mode as rover_set_mode
-from sitl.autopilot.rover.modes import table as rover_table
 from sitl.autopilot.shell_parameters import MODE_BLOCK
 from tests.bridge.test_autopilots import ACCEPTED, FAILED, FirmwareBench, copter, long, rover, texts
 

@@ -9,7 +9,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.bridge.services.mission import MissionService
+from sitl.bridge.services.mission_protocol import MissionService
 from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import Bench
 

@@ -9,7 +9,7 @@ import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
 from sitl.bridge.services.parachute import ParachuteService
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.core.mavlink import MavCmd
 from sitl.simulation import Core
 from tests.bridge.fakes import FakeRover

@@ -18,7 +18,7 @@ from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params.parameter import stored
 from sitl.bridge.frame import Splitter
 from sitl.bridge.metadata import file_crc
-from sitl.bridge.services.parameters import MOST_REPORTED
+from sitl.bridge.services.parameter_protocol import MOST_REPORTED
 from tests.bridge.fakes import Bench, Client
 
 

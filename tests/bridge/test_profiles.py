@@ -17,7 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.bridge import docs, services
 from sitl.bridge.dialect import message_by_id
 from sitl.bridge.docs import BY_SERVICES
-from sitl.bridge.profile import Profile, load
+from sitl.bridge.firmware_profile import Profile, load
 from sitl.bridge.services.service import Handler, Service
 from sitl.bridge.wire.choose import message_of
 from sitl.vehicle.kinds import KINDS

@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot import arming_checks
 from sitl.autopilot.avoidance.proximity import MAVLINK
-from sitl.autopilot.params.parameters import Parameters
+from sitl.autopilot.params.firmware_parameters import Parameters
 from tests.bridge.fakes import Bench, FakeRover
 
 PROXIMITY = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY

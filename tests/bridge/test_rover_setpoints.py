@@ -15,7 +15,11 @@ from sitl.autopilot.rover.modes.guided_setpoints import SETPOINT_IGNORED
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.links import InProcessLink
 from sitl.bridge.rover.setpoints import attitude_target, position_target_global, position_target_local
-from sitl.bridge.services.setpoints import SetAttitudeTarget, SetPositionTargetGlobalInt, SetPositionTargetLocalNed
+from sitl.bridge.services.setpoint_messages import (
+    SetAttitudeTarget,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+)
 from sitl.vehicle.rover import Rover
 from tests.bridge.fakes import HOME, Bench, Client, FakeRover, filled
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.bridge.services.senders import SenderService
 from tests.bridge.fakes import Bench, Client
 

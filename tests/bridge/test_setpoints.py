@@ -11,7 +11,11 @@ import pytest
 from sitl.autopilot.copter.modes import auto_yaw
 from sitl.autopilot.copter.modes.guided import ACCEL, ANGLE, GUIDED, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
 from sitl.bridge.copter.setpoints import attitude_target, position_target_global, position_target_local
-from sitl.bridge.services.setpoints import SetAttitudeTarget, SetPositionTargetGlobalInt, SetPositionTargetLocalNed
+from sitl.bridge.services.setpoint_messages import (
+    SetAttitudeTarget,
+    SetPositionTargetGlobalInt,
+    SetPositionTargetLocalNed,
+)
 from sitl.vehicle.copter import Copter
 from tests.bridge.fakes import HOME, FakeVehicle, filled
 

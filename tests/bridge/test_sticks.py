@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.copter import sticks as copter
-from sitl.bridge.rover import sticks as rover
+from sitl.bridge.copter import joystick as copter
+from sitl.bridge.rover import joystick as rover
 from sitl.bridge.services.rc import INVALID, ManualControl, RcChannelsOverride, rc_channels_override
 from tests.bridge.fakes import FakeRover, FakeVehicle, filled
 

@@ -9,8 +9,8 @@ from itertools import pairwise
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.copter.modes.table import TITLES
-from sitl.autopilot.rover.modes.table import NAMES as ROVER_MODES
+from sitl.autopilot.copter.modes.mode_list import TITLES
+from sitl.autopilot.rover.modes.mode_list import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links.inprocess import InProcessLink
 from sitl.core.vectors import Vec2, Vec3

@@ -13,11 +13,11 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.copter.modes.guided import ANGLE, GUIDED, POS_VEL_ACCEL
+from sitl.bridge.copter import status_messages as copter
 from sitl.bridge.copter import targets as copter_targets
-from sitl.bridge.copter import telemetry as copter
 from sitl.bridge.dialect import message
-from sitl.bridge.profile import load
-from sitl.bridge.rover import telemetry as rover
+from sitl.bridge.firmware_profile import load
+from sitl.bridge.rover import status_messages as rover
 from sitl.bridge.telemetry import build, builder, register_message
 from sitl.bridge.telemetry.motion import Attitude, attitude, global_position
 from sitl.bridge.telemetry.ranging import PART, DebugFloatArray, scan

@@ -8,7 +8,7 @@ from typing import Any
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.terrain.grid import PARTS, around, block_of
 from sitl.bridge.dialect import message
-from sitl.bridge.services.terrain import TerrainService
+from sitl.bridge.services.terrain_protocol import TerrainService
 from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import HOME, Bench, FakeRover, mavlink
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl.cli import cache, main
-from sitl.core.shipped.targets import TARGETS
+from sitl.core.shipped.target_machines import TARGETS
 
 
 @pytest.fixture

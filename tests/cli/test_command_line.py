@@ -19,7 +19,7 @@ from sitl.cli import demo, main
 from sitl.cli.cache import all_entries
 from sitl.core.fingerprint import reached
 from sitl.core.kernels import UNITS
-from sitl.logs import flight, plot
+from sitl.logs import plot, tlog_flight
 from sitl.simulation import Core
 from sitl.vehicle.kinds import KINDS
 from tests.cli.command import environment, sitl
@@ -34,7 +34,7 @@ def test_a_run_says_where_it_listens_and_writes_a_log(core: Core, tmp_path: Path
     lines = result.stdout.splitlines()
     assert lines[0].startswith("MAVLink on tcp:127.0.0.1:") and not lines[0].endswith(":0")
     assert lines[1] == "log: logs/erle_copter-0.tlog"
-    flown = flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+    flown = tlog_flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
     assert flown["ATTITUDE"][-1, 0] == pytest.approx(60.0, abs=0.2)
     assert any("is using GPS" in text for _, text in flown.texts)
     plot.draw(flown, tmp_path / "flight.png")
@@ -73,7 +73,7 @@ def test_signals_end_a_run_cleanly(core: Core, tmp_path: Path, number: int) -> N
         run.send_signal(number)
         out, err = run.communicate(timeout=120)  # a client that left first, with bytes unread, would be told of
     assert (run.returncode, err) == (0, ""), out
-    flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+    tlog_flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Cor
         if slept < 40.5:
             break
     assert slept < 40.5
-    flown = flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
+    flown = tlog_flight.read(tmp_path / "logs" / "erle_copter-0.tlog")
     assert flown["ATTITUDE"][-1, 0] > 39.0
 
 
@@ -194,7 +194,7 @@ def test_the_demo_flies_its_mission_and_draws_it(core: Core, tmp_path: Path) -> 
     for seq in range(1, 7):
         assert f"mission item {seq} reached" in result.stdout
     assert (tmp_path / "logs" / "demo-copter.png").read_bytes().startswith(b"\x89PNG")
-    flown = flight.read(tmp_path / "logs" / "demo-copter.tlog")
+    flown = tlog_flight.read(tmp_path / "logs" / "demo-copter.tlog")
     position = flown["LOCAL_POSITION_NED"]
     assert -position[:, 3].min() == pytest.approx(10.0, abs=0.5)
     assert position[:, 1].max() == pytest.approx(30.0, abs=1.5)
@@ -232,7 +232,7 @@ def test_a_run_of_a_rover_writes_a_log_that_can_be_drawn(core: Core, tmp_path: P
     assert result.returncode == 0, result.stderr
     assert "not in this firmware: WPNAV_SPEED" in result.stderr
     assert result.stdout.splitlines()[1] == "log: logs/erle_rover-3.tlog"
-    driven = flight.read(tmp_path / "logs" / "erle_rover-3.tlog", 4)
+    driven = tlog_flight.read(tmp_path / "logs" / "erle_rover-3.tlog", 4)
     assert any("is using GPS" in text for _, text in driven.texts)
     assert np.degrees(driven["ATTITUDE"][-1, 3]) == pytest.approx(90.0, abs=10.0)
     plot.draw(driven, tmp_path / "drive.png", kind="rover")
@@ -308,7 +308,7 @@ def test_the_demo_drives_its_mission_and_draws_it(core: Core, tmp_path: Path) ->
     for seq in range(1, 5):
         assert f"mission item {seq} reached" in result.stdout
     assert (tmp_path / "logs" / "demo-rover.png").read_bytes().startswith(b"\x89PNG")
-    position = flight.read(tmp_path / "logs" / "demo-rover.tlog")["LOCAL_POSITION_NED"]
+    position = tlog_flight.read(tmp_path / "logs" / "demo-rover.tlog")["LOCAL_POSITION_NED"]
     assert position[:, 1].max() == pytest.approx(20.0, abs=2.5)
     assert position[:, 2].max() == pytest.approx(20.0, abs=2.5)
     assert np.hypot(position[-1, 1], position[-1, 2]) < 3.5

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from sitl.cli import WELCOME, main, parser
-from sitl.cli.commands import COMMANDS
+from sitl.cli.command_list import COMMANDS
 from tests.cli.command import ROOT, environment
 
 
@@ -118,7 +118,7 @@ import os, runpy, signal, sys
 class Pressed:
     "Ctrl-C is pressed while the command is being loaded."
     def find_spec(self, name, *rest):
-        if name == "sitl.cli.commands":
+        if name == "sitl.cli.command_list":
             os.kill(os.getpid(), signal.SIGINT)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -20,7 +20,7 @@ from sitl.client.byte_socket import ByteSocket
 from sitl.client.connection import Connection, Remote
 from sitl.client.endpoint import Endpoint, Inbox
 from sitl.client.proof import BY_NAME, PARAMETER_NAME
-from sitl.envs.mavlink.telemetry import StepTelemetry
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from tests.ports import free_port
 
 REQUEST, ACCEPTED, FAILED = 512, 0, 4

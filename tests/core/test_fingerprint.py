@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from enum import IntEnum
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,10 @@ from typing import Any
 import pytest
 
 from sitl.core.constant_tables import constant_table
-from sitl.core.fingerprint import Reached
+from sitl.core.fingerprint import Reached, fingerprint
+from sitl.core.kernels import UNITS, Unit
 from sitl.core.records import Record
+from sitl.core.shipped.identity import identity
 
 SHOW = """
 import sys
@@ -105,3 +108,28 @@ def test_records_that_are_not_small_have_room(numbers: int, size: int) -> None:
     )
     assert made.dtype.itemsize == size
     assert [field.offset for field in made.fields.values()] == [8 * k for k in range(numbers)]
+
+
+def _callee(fleet: Any, index: int) -> None:
+    """A unit that another one calls."""
+
+
+def _caller(fleet: Any, index: int) -> None:
+    _callee(fleet, index)
+
+
+@pytest.mark.parametrize("changed", [{"name": "elsewhere.callee"}, {"integers": 1}])
+def test_a_unit_that_is_linked_otherwise_counts(monkeypatch: pytest.MonkeyPatch, changed: dict[str, Any]) -> None:
+    """A unit moves to another module, and nothing is edited in its caller: machine code of the caller that asks for
+    the old symbol would end the process ("LLVM ERROR: Symbol not found")."""
+    caller, callee = Unit("tests.caller", _caller, 0), Unit("tests.callee", _callee, 0)
+
+    def hashes() -> tuple[str, str]:
+        return fingerprint(caller, (), ""), identity(caller, "", ())
+
+    monkeypatch.setitem(UNITS, "tests.caller", caller)
+    monkeypatch.setitem(UNITS, "tests.callee", callee)
+    before = hashes()
+    assert before == hashes()
+    monkeypatch.setitem(UNITS, "tests.callee", replace(callee, **changed))
+    assert all(one != other for one, other in zip(before, hashes(), strict=True))

@@ -39,19 +39,19 @@ MEMORY = {"memset", "memcpy", "memmove", "bzero"}
 OURS = re.compile(r"sitl_|_Z|\.?numba|NRT_|_?Py|__.*_chk$")
 """Other units, Numba's own, and Python's: kernels take their arguments from it and report errors to it."""
 QUICK = (
-    "autopilot.copter.control.update.update",
+    "autopilot.copter.control.control_step.update",
     "autopilot.estimation.update.run_second",
     "autopilot.estimation.update.step_bank",
-    "autopilot.rover.control.update.update",
+    "autopilot.rover.control.control_step.update",
     "physics.native.copter.step.step",
     "physics.native.ranging.measure",
     "vehicle.copter.advance",
 )
 """Units whose machine code is looked at in seconds."""
 SLOW = (
-    "autopilot.copter.modes.update.update",
+    "autopilot.copter.modes.decisions.update",
     "autopilot.estimation.update.step",
-    "autopilot.rover.modes.update.update",
+    "autopilot.rover.modes.decisions.update",
     "bridge.copter.core.receive",
     "bridge.copter.core.transmit",
     "physics.native.rover.step.step",

@@ -14,7 +14,7 @@ import pytest
 
 from sitl import vehicles
 from sitl.autopilot.mission.item import MissionItem, home_item
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.bridge.signing import SigningState
 from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3

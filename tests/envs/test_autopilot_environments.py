@@ -14,7 +14,7 @@ import pytest
 from gymnasium.error import InvalidAction
 from pytest import approx
 
-from sitl.autopilot.params.files import ParameterWarning
+from sitl.autopilot.params.parm_files import ParameterWarning
 from sitl.envs import EnvOptionError
 from sitl.envs.tasks import Task
 from sitl.errors import LinkLostError

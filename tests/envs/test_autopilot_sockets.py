@@ -20,7 +20,7 @@ from sitl.bridge.frame import encode_v2
 from sitl.bridge.wire.choose import message_of
 from sitl.client import connect
 from sitl.envs import EnvOptionError
-from sitl.envs.mavlink.telemetry import SCAN, SECTORS, StepTelemetry
+from sitl.envs.mavlink.last_messages import SCAN, SECTORS, StepTelemetry
 from sitl.envs.robots import autopilot, in_process
 from sitl.envs.robots.in_process import InProcessVehicles
 from sitl.envs.robots.starts import Starts

@@ -20,7 +20,7 @@ from sitl.client.connection import RealTime
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink import hand_over
 from sitl.envs.mavlink.endings import ENDINGS
-from sitl.envs.mavlink.telemetry import StepTelemetry
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from tests.envs.test_guarded_vehicles import BRAKE, LOITER, STILL, environment, mode
 from tests.envs.test_reset_of_real_vehicles import DISARM, MODE, REBOOT, RealVehicle, hovering
 

@@ -10,8 +10,8 @@ import pytest
 from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat
 from sitl.envs.mavlink import px4
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from sitl.envs.mavlink.preparation import mode_parameters
-from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.copter import ROBOT
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from sitl import Simulation
 from sitl.autopilot.mission.item import MissionItem
-from sitl.bridge.services.terrain import TerrainService
+from sitl.bridge.services.terrain_protocol import TerrainService
 from sitl.client import Client
 from sitl.client.terrain import TerrainAnswers
 from sitl.run.runner import open_dataflash

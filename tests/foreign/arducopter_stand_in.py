@@ -16,7 +16,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sitl import vehicles
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.bridge.links.tcp import TcpServerLink
 from sitl.plants.plant import PhysicsLostError
 from sitl.run.pacing import Pacing
@@ -46,7 +46,7 @@ def main(name: str, words: list[str]) -> None:
     model, _, host = given.model.partition(":")
     assert model == "JSON"
     print(f"Starting {name}: JSON at {host}:{given.sim_port_out}", flush=True)
-    values = files.load_all([path for path in given.defaults.split(",") if path])
+    values = parm_files.load_all([path for path in given.defaults.split(",") if path])
     lat, lon, alt, heading = (float(number) for number in given.home.split(","))
     bare = replace(vehicles.load(FRAMES[name]), parameters={})  # it knows no airframe but by its parameters
     simulation = Simulation(

@@ -18,9 +18,9 @@ from sitl.client.connection import Connection
 from sitl.client.endpoint import Endpoint
 from sitl.envs import EnvOptionError, NotReadyError
 from sitl.envs.mavlink.foreign import physics_port
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from sitl.envs.mavlink.preparation import set_intervals
 from sitl.envs.mavlink.px4 import OFFBOARD
-from sitl.envs.mavlink.telemetry import StepTelemetry
 from sitl.envs.robots.autopilot import AutopilotRobot
 from sitl.envs.robots.foreign import of_episodes
 from sitl.errors import LinkLostError

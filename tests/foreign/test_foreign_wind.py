@@ -10,7 +10,7 @@ import pytest
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v1, encode_v2
 from sitl.foreign.choice import Choice
-from sitl.foreign.wind import Wind
+from sitl.foreign.wind_parameters import Wind
 
 VALUE, SET = message("PARAM_VALUE"), message("PARAM_SET")
 

@@ -9,8 +9,8 @@ import struct
 
 import pytest
 
-from sitl.bridge.ardupilot_json.motion import MotionError
-from sitl.bridge.ardupilot_json.motion import decode as decode_motion
+from sitl.bridge.ardupilot_json.answer import MotionError
+from sitl.bridge.ardupilot_json.answer import decode as decode_motion
 from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode
 from tests.foreign import json_lines
 

@@ -17,9 +17,9 @@ from sitl.agents import baselines, learnt
 from sitl.agents.deploy import deploy
 from sitl.client.connection import Remote, connect
 from sitl.core.mavlink import MavResult
+from sitl.envs.mavlink.last_messages import StepTelemetry
 from sitl.envs.mavlink.preparation import mode_parameters
 from sitl.envs.mavlink.px4 import ALTCTL, HOLD, MODES, OFFBOARD, POSCTL
-from sitl.envs.mavlink.telemetry import StepTelemetry
 from tests.foreign.test_foreign_runs import command, line_with
 
 PROGRAM = str(Path(os.environ.get("SITL_PX4", "")) / "px4")

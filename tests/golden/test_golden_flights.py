@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl.missions.suite.cases import Case, find
-from sitl.missions.suite.fly import fly_case
+from sitl.missions.suite.fly_case import fly_case
 
 CASES = find(Path(__file__).parent)
 QUICK = ("copter-square", "rover-square")

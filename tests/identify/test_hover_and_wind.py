@@ -8,7 +8,7 @@ import pytest
 
 from sitl.core.constants import GRAVITY
 from sitl.identify import drag, hover
-from sitl.identify.flight import FlightLog
+from sitl.identify.log_streams import FlightLog
 
 
 @pytest.fixture

@@ -81,7 +81,7 @@ def test_pulses_that_hardly_move_are_said(flown, monkeypatch) -> None:
 
 
 def test_a_log_of_no_rest_tells_no_noise(flown, monkeypatch) -> None:
-    monkeypatch.setattr("sitl.identify.flight.FlightLog.at_rest", property(lambda log: []))
+    monkeypatch.setattr("sitl.identify.log_streams.FlightLog.at_rest", property(lambda log: []))
     estimate = identify(flown)["gyro_noise_density"]
     assert math.isnan(estimate.value) and "LOG_DISARMED 1" in estimate.reason
 

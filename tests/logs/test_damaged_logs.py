@@ -14,7 +14,7 @@ import pytest
 
 from sitl.errors import SitlError
 from sitl.logs import track_bin, track_tlog
-from sitl.logs.flight import read as read_columns
+from sitl.logs.tlog_flight import read as read_columns
 from sitl.logs.track import Track
 from sitl.logs.track_bytes import MAGIC
 from sitl.logs.track_columns import COLUMNS, TrackError

@@ -12,9 +12,9 @@ import pytest
 from sitl.autopilot.params.parameter import FLOAT, INT32
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
-from sitl.bridge.services.parameters import pack_parameters
-from sitl.logs.telemetry import Telemetry
+from sitl.bridge.services.parameter_protocol import pack_parameters
 from sitl.logs.telemetry_parameters import by_ftp
+from sitl.logs.tlog_columns import Telemetry
 
 from .log_files import telemetry
 

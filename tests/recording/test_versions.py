@@ -28,7 +28,7 @@ def test_changed_laws_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     before = identity.version(COPTER)
     identity._compiled.cache_clear()
     was = compiler.unit_identity
-    changed = "autopilot.copter.control.update.update"
+    changed = "autopilot.copter.control.control_step.update"
     monkeypatch.setattr(compiler, "unit_identity", lambda u, path: was(u, path) + ("x" if u.name == changed else ""))
     after = identity.version(COPTER)
     identity._compiled.cache_clear()

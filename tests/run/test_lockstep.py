@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.services.commands import GRANT, RESEED
+from sitl.bridge.services.command_protocol import GRANT, RESEED
 from sitl.client.endpoint import Endpoint
 from sitl.run.standstill import SLICE_US, serve_lockstep
 from sitl.simulation import Core, Simulation

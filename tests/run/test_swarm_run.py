@@ -13,7 +13,7 @@ from sitl import Swarm
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Frame, Splitter, encode_v2
 from sitl.bridge.links import InProcessLink, LinkAddressError
-from sitl.bridge.services.commands import GRANT
+from sitl.bridge.services.command_protocol import GRANT
 from sitl.cli import parser
 from sitl.cli.swarm import moved, opened
 from sitl.errors import OptionError

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 
 import pytest
 
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client import Client
 from sitl.simulation import Simulation
 from sitl.vehicle.acting import ACTS_WHILE, ARMED, acts_not

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client import Client
 from sitl.core.constants import NEVER
 from sitl.simulation import Simulation

@@ -10,7 +10,7 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from sitl import vehicles
-from sitl.bridge.profile import Profile
+from sitl.bridge.firmware_profile import Profile
 from sitl.bridge.wire.choose import message_of
 from sitl.client import Endpoint
 from sitl.errors import OptionError

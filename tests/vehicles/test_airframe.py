@@ -15,9 +15,9 @@ from sitl.autopilot.rover.parameters import TABLE as ROVER_TABLE
 from sitl.deprecation import SitlDeprecationWarning
 from sitl.vehicle.copter import Copter
 from sitl.vehicles import AirframeError, ardupilot_quad
-from sitl.vehicles.properties.copter import Properties
-from sitl.vehicles.properties.rover import STEERING_SKID
-from sitl.vehicles.properties.rover import Properties as RoverProperties
+from sitl.vehicles.properties.ground_vehicle import STEERING_SKID
+from sitl.vehicles.properties.ground_vehicle import Properties as RoverProperties
+from sitl.vehicles.properties.multicopter import Properties
 from sitl.vehicles.turtlebot import TurtlebotAirframe
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sitl import cli, vehicles
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.scenario import Scenario
 from sitl.simulation import Simulation
 from sitl.vehicles import AirframeError, CopterAirframe
@@ -126,7 +126,7 @@ def test_what_is_wrong_is_named_with_the_file(own, old, new, says) -> None:
 def test_parameters_that_the_firmware_lacks_or_refuses_are_named_with_the_file(own) -> None:
     with pytest.raises(AirframeError, match=r"mine\.toml'.* FRAME_TIPE \(did you mean 'FRAME_TYPE'\?\)"):
         Simulation(own(("FRAME_TYPE", "FRAME_TIPE")))
-    with pytest.raises(files.ParameterError, match=r"mine\.toml'.*ANGLE_MAX"):
+    with pytest.raises(parm_files.ParameterError, match=r"mine\.toml'.*ANGLE_MAX"):
         Simulation(own(("ANGLE_MAX = 3000", "ANGLE_MAX = -5")))
 
 

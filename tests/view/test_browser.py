@@ -35,7 +35,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 from sitl.missions.comparison import flight
 from sitl.missions.view import together
-from sitl.view import library
+from sitl.view import page_library
 from sitl.view.axes import to_scene
 from sitl.view.flight_page import FlightPage
 from sitl.view.live_page import LivePage
@@ -112,7 +112,7 @@ def click(browser: Any, label: str) -> None:
 def test_a_pilot_flies_from_the_page(browser: Any, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     page = served.page
     refused: list[str] = []
-    monkeypatch.setattr(library, "note", lambda client, text, title="": refused.append(text))
+    monkeypatch.setattr(page_library, "note", lambda client, text, title="": refused.append(text))
     browser.get(page.address)
     until(browser, lambda: "erle_copter" in text(browser) and "STABILIZE" in text(browser))
     assert page.is_seen and "disarmed" in text(browser)

@@ -17,7 +17,7 @@ from sitl import Fleet, Simulation
 from sitl.run.pacing import StoppablePacing
 from sitl.run.runner import serve
 from sitl.simulation import Core
-from sitl.view import library
+from sitl.view import page_library
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 import msgspec.msgpack
@@ -27,7 +27,7 @@ from websockets.typing import Subprotocol
 
 import sitl.envs  # noqa: F401
 from sitl.envs.page.page import EnvPage
-from sitl.view.fleet import FleetPage
+from sitl.view.fleet_page import FleetPage
 from sitl.view.flight_page import FlightPage
 from sitl.view.flights import of_track
 from sitl.view.incoming import LONGEST, check
@@ -84,7 +84,7 @@ class Browser:
 def notes(monkeypatch: pytest.MonkeyPatch) -> Notes:
     """What browsers are told."""
     told: Notes = queue.Queue()
-    monkeypatch.setattr(library, "note", lambda client, text, title="": told.put(text))
+    monkeypatch.setattr(page_library, "note", lambda client, text, title="": told.put(text))
     return told
 
 
@@ -98,7 +98,7 @@ def live(core: Core) -> Iterator[tuple[LivePage, Browser]]:
 
 
 def widgets(page: Any) -> dict[str, Any]:
-    return dict(getattr(page.server.gui, library._WIDGETS))
+    return dict(getattr(page.server.gui, page_library._WIDGETS))
 
 
 def everything(page: Any) -> Iterator[Any]:

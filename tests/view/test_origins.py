@@ -14,21 +14,21 @@ pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from sitl.view import library, origins
+from sitl.view import origins, page_library
 from sitl.view.page import LOCAL, free_port
 
 
 @pytest.fixture
 def port() -> Iterator[int]:
     """Of a page's server."""
-    server = library.serve(LOCAL, free_port(0), "test")
+    server = page_library.serve(LOCAL, free_port(0), "test")
     yield int(server.get_port())
-    library.stop(server)
+    page_library.stop(server)
 
 
 def hear(port: int, origin: str | None, host: str = LOCAL) -> bytes:
     """The first message that a websocket gets; InvalidStatus: it is turned away."""
-    version = library.viser().__version__
+    version = page_library.viser().__version__
     with connect(f"ws://{LOCAL}:{port}", origin=origin, subprotocols=[f"viser-v{version}"], open_timeout=30) as socket:  # type: ignore[arg-type,list-item]
         return bytes(socket.recv(timeout=30))  # type: ignore[arg-type]
 
@@ -78,10 +78,10 @@ def test_a_viser_that_cannot_be_guarded_is_not_used(monkeypatch: pytest.MonkeyPa
         def ViserServer(self, **options: Any) -> Any:
             return "the server"
 
-    monkeypatch.setattr(library, "viser", Other)
-    monkeypatch.setattr(library, "stop", stopped.append)
-    with pytest.raises(library.UnguardedError, match=r"viser 9\.9 takes whatever"):
-        library.serve(LOCAL, 1, "test")
+    monkeypatch.setattr(page_library, "viser", Other)
+    monkeypatch.setattr(page_library, "stop", stopped.append)
+    with pytest.raises(page_library.UnguardedError, match=r"viser 9\.9 takes whatever"):
+        page_library.serve(LOCAL, 1, "test")
     assert stopped == ["the server"]
 
 

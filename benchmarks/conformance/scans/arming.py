@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 
 from sitl.autopilot.params.parameter import INT8, INT16
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.errors import SitlError
 from sitl.vehicle.kinds import KINDS
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Subcommands of ``sitl`` that learn and play (``sitl.cli.commands``)."""
+"""Subcommands of ``sitl`` that learn and play (``sitl.cli.command_list``)."""

@@ -22,7 +22,7 @@ from ..runs.bar import Bar
 from ..runs.config import EPISODES
 from ..runs.folder import RunFolder
 from ..runs.training import is_done, train_all
-from .options import add_jobs, check_report_libraries, positive, workers
+from .agent_options import add_jobs, check_report_libraries, positive, workers
 from .rehearse import with_bar
 
 _SEEDS = 10

@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..report.compare import compare
+from ..report.comparison import compare
 from ..report.group import Group, unique_names
-from .options import add_jobs, add_said_again, positive, workers
+from .agent_options import add_jobs, add_said_again, positive, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -11,7 +11,7 @@ from tqdm import tqdm
 from .. import datasets
 from ..experts import AUTOPILOTS
 from ..named_policies import RANDOM
-from .options import add_option, assignments, positive, whole
+from .agent_options import add_option, assignments, positive, whole
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

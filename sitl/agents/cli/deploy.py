@@ -12,7 +12,7 @@ from sitl.foreign.choice import ARDUPILOT, PX4
 from .. import baselines, learnt
 from ..deploy import REPLACED, Deployed, deploy, options_of
 from ..errors import check_names
-from .options import add_option, assignment, assignments, positive
+from .agent_options import add_option, assignment, assignments, positive
 
 RESETS = ("none", "return", "reboot", "force")
 

@@ -11,7 +11,7 @@ from sitl.cli.output import add_json_option, print_json
 
 from ..evaluations import evaluate_runs
 from ..runs import folder as folders
-from .options import add_jobs, add_option, assignments, positive, whole, workers
+from .agent_options import add_jobs, add_option, assignments, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

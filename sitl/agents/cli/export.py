@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .. import learnt
 from ..runs import folder as folders
-from .options import add_said_again
+from .agent_options import add_said_again
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -29,7 +29,7 @@ from ..runs.backends import Workers
 from ..runs.config import RunConfig
 from ..runs.evaluation_plan import EvaluationPlan
 from ..runs.files import make_folder
-from .options import add_jobs, add_said_again, check_report_libraries, positive, whole, workers
+from .agent_options import add_jobs, add_said_again, check_report_libraries, positive, whole, workers
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

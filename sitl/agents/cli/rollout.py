@@ -20,7 +20,7 @@ from ..evaluate import Played
 from ..named_policies import RANDOM, Named
 from ..rollout import ROBOTS, rollout
 from ..runs.files import make_folder
-from .options import add_jobs, add_option, assignments, positive, whole, workers
+from .agent_options import add_jobs, add_option, assignments, positive, whole, workers
 
 RESULTS = "episodes.csv"
 

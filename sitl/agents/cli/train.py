@@ -25,7 +25,7 @@ from ..runs.config import MAX_STEPS, RunConfig, versions
 from ..runs.folder import RunFolder
 from ..runs.sweep import OPTION, Sweep, is_sweep
 from ..runs.training import is_done, train_all
-from .options import add_jobs, add_option, assignment, assignments, positive, workers
+from .agent_options import add_jobs, add_option, assignment, assignments, positive, workers
 from .showing_training import shown_training
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import showing
 from ..errors import AgentError
 from ..runs import folder as folders
-from .options import add_option, assignments, positive, whole
+from .agent_options import add_option, assignments, positive, whole
 
 SPEED = 5.0
 

@@ -22,7 +22,7 @@ from sitl.envs.observations import DigitPlan, Digits, digits_of
 from sitl.envs.rewards import ByAction
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.tasks import Task, count_crashes
-from sitl.physics.native.turtlebot.fleet import Orders, advance_fleet
+from sitl.physics.native.turtlebot.compiled_fleet import Orders, advance_fleet
 from sitl.physics.native.turtlebot.scan import Beams
 from sitl.physics.native.turtlebot.state import Turtlebot as TurtlebotRecord
 from sitl.turtlebots.native import Turtlebots, ticks_in

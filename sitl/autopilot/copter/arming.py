@@ -14,8 +14,8 @@ from .arming_checks import DOUBTFUL, MANDATORY, TEXTS, arm_checks, check, doubt_
 from .control.motors import ARMING_DELAY_US
 from .control.spool import SpoolState
 from .modes import ground, simple
+from .modes.mode_list import TITLES, has_manual_throttle, idles_armed
 from .modes.state import Modes
-from .modes.table import TITLES, has_manual_throttle, idles_armed
 from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]

@@ -19,11 +19,11 @@ from ..sensor_calibration import NEEDS_LOCATION
 from ..state import Estimate, Radio
 from . import pilot
 from .modes.auto import AUTO
+from .modes.mode_list import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 from .modes.state import Modes
-from .modes.table import arms_at_any_throttle, has_manual_throttle, may_arm, requires_position
 from .parameters import Parameters
 from .state import Vehicle
-from .terrain import has_range
+from .terrain_following import has_range
 
 TERRAIN_OFF, TERRAIN_WAITS, RTL_TERRAIN_OFF, DOUBTFUL = 1 << 20, 1 << 21, 1 << 22, 1 << 26
 """Bits that are other checks of rovers."""

@@ -15,10 +15,10 @@ from ..mission.item import MissionItem
 from ..mission.notes import Note
 from ..notes import Text
 from . import arming
-from .modes import autotune_gains, commands, simple, zigzag
+from .modes import autotune_gains, mode_commands, simple, zigzag
 from .modes.auto import AUTO
+from .modes.mode_list import NAMES
 from .modes.set_mode import request
-from .modes.table import NAMES
 
 TRIMMED_IN = (0, 2)
 """Modes, STABILIZE and ALT_HOLD."""
@@ -122,7 +122,7 @@ def _hold_over_target(holder: Holder, position: int) -> list[Note]:
 def _pause(holder: Holder, position: int) -> list[Note]:
     if position == MIDDLE:
         return []
-    done = commands.set_paused(holder.v.autopilot.modes, position == HIGH) == CommandResult.OK
+    done = mode_commands.set_paused(holder.v.autopilot.modes, position == HIGH) == CommandResult.OK
     return [Text(MavSeverity.WARNING, "Flight Mode Pause failed")] if position == HIGH and not done else []
 
 

@@ -35,7 +35,7 @@ from ..state import Arming, Failsafe
 from ..terrain.ground import is_long_missing
 from ..terrain.state import FAILSAFE as GROUND_MISSING
 from ..terrain.state import RTL_BEGINS_ANEW, TERRAIN_DID
-from .control import vibration
+from .control import vibration_compensation
 from .failsafe_actions import (
     CONTINUE_LANDING,
     DO_BRAKE,
@@ -57,9 +57,9 @@ from .modes.alt_hold import ALT_HOLD
 from .modes.auto import AUTO
 from .modes.guided import GUIDED
 from .modes.land import LAND
+from .modes.mode_list import is_autonomous, is_landing, requires_position
 from .modes.rtl import RTL
 from .modes.state import Modes
-from .modes.table import is_autonomous, is_landing, requires_position
 from .parameters.safety import Battery
 from .state import Vehicle
 
@@ -306,9 +306,9 @@ def watch_vibration(v: Vehicle) -> None:
     """Ten times a second: vertical control without the measured acceleration, when that runs away (FS_VIBE_ENABLE)."""
     ap = v.autopilot
     watched = ap.arming.armed and ap.params.FS.VIBE_ENABLE > 0.0
-    change = vibration.watch(ap.control.vibration, ap.estimate, watched, v.time_us)
-    if change != vibration.NOTHING:
-        report(ap.events, v.time_us, VIBRATION, change == vibration.BEGINS)
+    change = vibration_compensation.watch(ap.control.vibration, ap.estimate, watched, v.time_us)
+    if change != vibration_compensation.NOTHING:
+        report(ap.events, v.time_us, VIBRATION, change == vibration_compensation.BEGINS)
 
 
 @law

@@ -14,10 +14,10 @@ from .modes import ground, set_mode
 from .modes.auto import AUTO_RTL
 from .modes.brake import BRAKE
 from .modes.land import LAND
+from .modes.mode_list import has_manual_throttle
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
 from .modes.state import Modes
-from .modes.table import has_manual_throttle
 from .state import Vehicle
 
 # What a failsafe does; the numbers are those of BATT_FS_LOW_ACT and BATT_FS_CRT_ACT

@@ -13,9 +13,9 @@ from .failsafe_actions import is_idle
 from .modes import ground, set_mode
 from .modes.brake import BRAKE
 from .modes.land import LAND
+from .modes.mode_list import is_landing
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
-from .modes.table import is_landing
 from .state import Vehicle
 
 TICKS = 16

@@ -22,7 +22,7 @@ from .control.attitude_target import cos_lean
 from .control.motors import hover_throttle
 from .control.spool import SpoolState
 from .control.state import AttitudeState, Control, MotorsState
-from .modes import ground, table
+from .modes import ground, mode_list
 from .modes.state import LandingState, Modes
 from .parameters import Parameters
 from .parameters.control import Attitude
@@ -51,7 +51,7 @@ _DISARM_BEHAVIOUR = 4
 @inlined
 def is_taking_off(modes: Modes) -> bool:
     """Whether the mode raises the throttle from the ground by itself and tells when it flies."""
-    return modes.takeoff.user_active or table.is_taking_off(modes.number, modes)
+    return modes.takeoff.user_active or mode_list.is_taking_off(modes.number, modes)
 
 
 @inlined
@@ -81,7 +81,7 @@ def detect(v: Vehicle) -> None:
     ap = v.autopilot
     arming, modes = ap.arming, ap.modes
     modes.landing.acc += _FILTER * (ap.estimate.acc_ned - modes.landing.acc)
-    modes.landing.landing = table.is_landing(modes.number, modes)
+    modes.landing.landing = mode_list.is_landing(modes.number, modes)
     if not arming.armed:
         ground.set_landed(arming, True)
     elif arming.landed:
@@ -96,9 +96,9 @@ def detect(v: Vehicle) -> None:
 @law
 def disarms(mode: int, p: Parameters) -> bool:
     """Whether a vehicle that has landed in a ``mode`` disarms at once (PILOT_THR_BHV)."""
-    if int(p.PILOT.THR_BHV) & _DISARM_BEHAVIOUR == 0 or table.has_manual_throttle(mode):
+    if int(p.PILOT.THR_BHV) & _DISARM_BEHAVIOUR == 0 or mode_list.has_manual_throttle(mode):
         return False
-    return table.may_arm(mode, p, ArmingMethod.LANDING)
+    return mode_list.may_arm(mode, p, ArmingMethod.LANDING)
 
 
 @inlined
@@ -127,7 +127,7 @@ def is_meant_to_land(modes: Modes, motors: MotorsState, vel_d: float) -> bool:
     """Whether the mode lands, or the pilot's closed throttle asks for a descent that the ground has stopped."""
     if modes.landing.landing:
         return True
-    if not table.has_climb_stick(modes.number):
+    if not mode_list.has_climb_stick(modes.number):
         return False
     return modes.pilot.throttle_zero and motors.limit_throttle_lower and abs(vel_d) < _STOPPED
 
@@ -148,7 +148,7 @@ def set_priority(control: Control, arming: Arming, modes: Modes, vel_d: float, p
     attitude = control.attitude
     if not arming.armed or arming.landed:
         throttle_mix.set_mix_min(attitude, p)
-    elif table.has_manual_throttle(modes.number):
+    elif mode_list.has_manual_throttle(modes.number):
         if modes.pilot.throttle <= 0.0:
             throttle_mix.set_mix_min(attitude, p)
         else:

@@ -9,8 +9,8 @@ from ...core.elementary import cos, hypot, sin
 from ...core.mavlink import MavCmd, MavSeverity
 from ...core.vectors import Vec3
 from ..mission import item as commands
-from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import TERRAIN_FRAMES, MissionItem
+from ..mission.item_runners import Commands, is_speed, turns, whole_seconds
 from ..mission.location import down, point
 from ..mission.notes import Note, OutputItem
 from ..navigation import command
@@ -26,7 +26,7 @@ from .navigation import waypoint
 from .navigation.planner import PLANNER, Following
 from .navigation.state import CopterNav
 from .state import Autopilot, Vehicle
-from .terrain import ground_below, is_flat
+from .terrain_following import ground_below, is_flat
 
 EDGE = 3.0
 """A vehicle this near to the circle starts it where it is [m]."""

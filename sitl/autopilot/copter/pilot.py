@@ -28,7 +28,7 @@ from ..state import Failsafe, Radio
 from .control.attitude import Lean
 from .modes.state import Modes, PilotState
 from .parameters import Parameters
-from .parameters.flight import Pilot
+from .parameters.flight_modes import Pilot
 from .state import Vehicle
 
 THROTTLE_ZERO_US = 400_000

@@ -8,7 +8,7 @@ from ...core.kernels import law
 from ...core.mavlink import MavSeverity
 from ..events import Event, emit
 from ..state import Sensors
-from .parameters.flight import TakeOff
+from .parameters.flight_modes import TakeOff
 from .state import Vehicle
 
 STALE_US = 1_000_000

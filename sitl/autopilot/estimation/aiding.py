@@ -14,7 +14,7 @@ from ..gps_receivers import Fix
 from ..state import Estimate
 from . import noise
 from .covariance import clear
-from .events import EKF_ORIGIN_SET, EKF_STOPPED_GPS, EKF_USES_GPS
+from .estimator_events import EKF_ORIGIN_SET, EKF_STOPPED_GPS, EKF_USES_GPS
 from .history import shift
 from .magnetometer import learn_field
 from .state import POS, VEL, Ekf

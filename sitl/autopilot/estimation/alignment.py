@@ -14,7 +14,7 @@ from ...core.kernels import law
 from ...core.vectors import Vec2, Vec3
 from ..events import Events, emit
 from . import covariance, height
-from .events import EKF_TILT_ALIGNED
+from .estimator_events import EKF_TILT_ALIGNED
 from .magnetometer import clear_samples
 from .state import RING, THETA, Ekf, N
 from .strapdown import tilt_from_acc, within

@@ -7,12 +7,12 @@ from ...core.border import Sensors
 from ...core.kernels import law
 from ...core.vectors import Vec3
 from ..events import Events, emit
-from ..params.parameters import Parameters
+from ..params.firmware_parameters import Parameters
 from ..params.system import Compass
 from ..sensor_calibration import COMPASSES, differs, field_of, is_received
 from . import magnetometer, noise
 from .covariance import clear
-from .events import EKF_COMPASS_CHANGED
+from .estimator_events import EKF_COMPASS_CHANGED
 from .magnetometer import TIMEOUT_US
 from .state import BM, Ekf
 

@@ -18,7 +18,7 @@ from ..visual_odometry import VisualOdometry
 from . import flow, height
 from .aiding import reset_ne
 from .alignment import YAW
-from .events import BY_OTHERS, EKF_RELATIVE, EKF_USES, YAW_BY_OTHERS
+from .estimator_events import BY_OTHERS, EKF_RELATIVE, EKF_USES, YAW_BY_OTHERS
 from .fusion import NO_NIS, Innovation, correct, gate_ratio, innovate_position, innovate_state
 from .history import past_at
 from .magnetometer import turn

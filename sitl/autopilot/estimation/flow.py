@@ -18,7 +18,7 @@ from ..params.estimator import Ekf3
 from ..state import Estimate, Sensors
 from . import noise
 from .aiding import reset_ne
-from .events import BY_FLOW, EKF_RELATIVE, EKF_STOPPED_AIDING, EKF_USES
+from .estimator_events import BY_FLOW, EKF_RELATIVE, EKF_STOPPED_AIDING, EKF_USES
 from .fusion import NO_NIS, Innovation, clear_row, correct, gate_ratio, innovate
 from .history import past_at
 from .state import THETA, VEL, Ekf

@@ -19,7 +19,7 @@ from ...core.vectors import Vec2, Vec3
 from ..events import Events
 from ..gps_receivers import Fix, fix_of
 from ..params.estimator import Ekf3
-from ..params.parameters import Parameters
+from ..params.firmware_parameters import Parameters
 from ..params.without_gps import Sources
 from ..state import Estimate, Sensors
 from . import doubt, height, noise, sources

@@ -24,7 +24,7 @@ from ..params.estimator import Ekf3
 from ..state import Estimate
 from . import noise
 from .covariance import clear
-from .events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
+from .estimator_events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
 from .fusion import NIS_MAGNETOMETER, Innovation, clear_row, correct, gate_ratio, innovate
 from .magnetometer import (
     FUSE_SAMPLES,
@@ -37,7 +37,7 @@ from .magnetometer import (
     take_mean,
     turn,
 )
-from .state import BG, BM, THETA, VEL, Ekf
+from .state import BG, BM, THETA, Ekf, N
 
 NEVER, ALWAYS = 2.0, 4.0
 """EK3_MAG_CAL: biases of the magnetometer are never learnt, always."""
@@ -46,8 +46,8 @@ STEP = 0.0125
 is the parameter times the root of this."""
 LONGEST = 0.1
 """Noise grows for so long at most from one fusion to the next [s]."""
-TIED = 0.8
-"""What a fusion leaves of the covariance of yaw with velocity and position. The receiver is more exact than
+TIED = 0.6
+"""What a fusion leaves of the covariance of yaw with all other states. The receiver is more exact than
 EK3_VELNE_M_NSE and EK3_POSNE_M_NSE say (noise.py): yaw would be learnt sooner from accelerations than by ArduPilot."""
 MAX_INNOVATION = 0.5
 """More of an innovation does not count at once [rad]."""
@@ -95,13 +95,17 @@ def add_noise(ekf: Ekf, params: Ekf3, elapsed: float) -> None:
 
 @law
 def loosen(ekf: Ekf) -> None:
-    """Let yaw, and the gyro's bias about it, be less tied to velocity and position.
+    """Let yaw, and the gyro's bias about the vertical, be less tied to all else.
 
-    Not while biases of the magnetometer are learnt: through these, yaw would stay tied.
+    Not while biases of the magnetometer are learnt: through these, yaw would stay tied. From all other states alike:
+    the factors then are a covariance themselves, and the product of two, element by element, is one (Schur). With a
+    factor for velocity and position alone, variances fall below zero in the end.
     """
-    P = ekf.P
-    for j in range(VEL, BG):
-        for k in (THETA + 2, BG + 2):
+    P, yaw, bias = ekf.P, THETA + 2, BG + 2
+    for j in range(N):
+        if j in (yaw, bias):
+            continue
+        for k in (yaw, bias):
             P[k, j] *= TIED
             P[j, k] *= TIED
 

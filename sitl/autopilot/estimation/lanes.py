@@ -24,7 +24,7 @@ from ..sensor_calibration import Calibrated
 from ..state import Autopilot, Estimate
 from . import alignment
 from .alignment import RUN
-from .events import EKF_LANE_SWITCHED
+from .estimator_events import EKF_LANE_SWITCHED
 from .state import Ekf
 
 FAILED_SCORE = 1.0

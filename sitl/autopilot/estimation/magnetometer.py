@@ -33,7 +33,7 @@ from ..params.estimator import Ekf3
 from ..state import Estimate
 from . import noise
 from .covariance import clear, turn_frame
-from .events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
+from .estimator_events import EKF_YAW_ALIGNED, EKF_YAW_ALIGNED_IN_FLIGHT
 from .fusion import NIS_MAGNETOMETER, NO_NIS, clear_row, correct, gate_ratio, innovate
 from .state import BM, THETA, Ekf
 from .strapdown import within

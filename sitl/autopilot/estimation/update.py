@@ -36,7 +36,7 @@ from . import (
     yaw_reset,
 )
 from .alignment import CALIBRATE, RUN, TILT, YAW
-from .events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES
+from .estimator_events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES
 from .state import POS, VEL, Ekf
 
 DT = TICK_S

@@ -9,12 +9,12 @@ from ...core.kernels import law
 from ...core.scalars import wrap_pi
 from ..events import emit
 from ..gps_receivers import Fix, fix_of
-from ..params.parameters import Parameters
+from ..params.firmware_parameters import Parameters
 from ..state import Autopilot, Estimate
 from . import gps, noise, yaw_bank
 from .aiding import reset_to_fix
 from .covariance import clear
-from .events import EKF_EMERGENCY_YAW
+from .estimator_events import EKF_EMERGENCY_YAW
 from .magnetometer import clear_samples
 from .state import BG, THETA, Ekf
 from .yaw_bank import YawBank

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...core.kernels import law
 from ...core.vectors import Vec3
-from ..params.fence import Fence
+from ..params.fence_parameters import Fence
 from ..state import Estimate, HomeState
 from .checks import kinds, margin_of
 from .state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState, names

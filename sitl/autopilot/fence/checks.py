@@ -17,7 +17,7 @@ from ..events import Event, Events, Row, emit, err, ev
 from ..log_events import LogErrorSubsystem, LogEvent
 from ..modes import ModeReason
 from ..notes import Text
-from ..params.fence import Fence
+from ..params.fence_parameters import Fence
 from ..state import Estimate, HomeState, Vehicle
 from .shapes import clearance, is_inclusion, use_origin
 from .state import (

@@ -20,7 +20,7 @@ from typing import Any, Protocol
 
 from ...core.mavlink import MavCmd, MavSeverity
 from ..arming_checks import DISARMED
-from ..estimation.events import EKF_ORIGIN_SET
+from ..estimation.estimator_events import EKF_ORIGIN_SET
 from ..events import EVENT_RING
 from ..modes import MODE_CHANGED
 from ..navigation.command import give_none
@@ -50,8 +50,8 @@ from ..navigation.state import (
 from ..notes import CurrentChanged, ItemReached, Text
 from ..state import Vehicle
 from . import jumps, returning
-from .commands import Commands
 from .item import COMMANDS, TERRAIN_FRAMES, UNREPORTED, MissionItem
+from .item_runners import Commands
 from .mission import Mission
 from .notes import Note
 from .time_of_day import seconds_until

@@ -20,8 +20,8 @@ from ..events import Events, emit_and_return
 from ..fence.checks import active
 from ..fence.state import AREAS, FenceState
 from ..params.avoidance import PathPlanning
-from ..params.fence import Fence
-from .profile import clear, evaluate, finished, remaining, step
+from ..params.fence_parameters import Fence
+from .leg_motion import clear, evaluate, finished, remaining, step
 from .state import DETOUR_REQUEST, GO_ON, LEG_ENDING, LEG_REQUEST, STRAIGHT, Detour, Leg, Nav
 
 DIJKSTRA = (2.0, 3.0)

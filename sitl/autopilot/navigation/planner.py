@@ -16,8 +16,8 @@ from ..avoidance.shortest_path import a_star
 from ..events import Event, Row, emit
 from ..state import Autopilot
 from .leg import SHORTEST, LegError, Limits, bounded, plan, write
+from .leg_motion import clear, evaluate
 from .path import areas_of, set_position
-from .profile import clear, evaluate
 from .state import DETOUR, ENDED, GO_ON, STRAIGHT, Leg
 
 A = TypeVar("A", bound=Autopilot)

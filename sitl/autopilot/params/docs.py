@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from .files import format_value
 from .parameter import stored
+from .parm_files import format_value
 from .table import Table
 
 

@@ -7,8 +7,8 @@ import re
 from typing import TypeVar
 
 from ...core.extensions import ExtensionError, Extensions
+from .firmware_parameters import Parameters
 from .parameter import ParameterGroup
-from .parameters import Parameters
 
 P = TypeVar("P", bound=Parameters)
 

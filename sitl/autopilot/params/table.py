@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from ...core.records import as_bytes
+from .firmware_parameters import Parameters
 from .parameter import INT32, Parameter, rows, stored
-from .parameters import Parameters
 
 _KEPT_LISTS = 64
 

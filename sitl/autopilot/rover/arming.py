@@ -13,9 +13,9 @@ from ..mode_switch import rudder_command
 from ..state import Arming
 from .arming_checks import TEXTS, check, method_checks
 from .control.motors import is_moving
+from .modes.mode_list import allows_arming_by_stick
 from .modes.simple import note_heading
 from .modes.state import PilotState
-from .modes.table import allows_arming_by_stick
 from .state import Vehicle
 
 __all__ = ["arm", "check", "disarm", "texts", "try_arm"]

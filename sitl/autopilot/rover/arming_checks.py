@@ -16,8 +16,8 @@ from .control import servos
 from .control.motors import is_skid
 from .heights import HEIGHTS
 from .modes.auto import AUTO
+from .modes.mode_list import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .modes.state import BIT_RADIO, Modes
-from .modes.table import allows_arming, allows_arming_by_stick, requires_position, requires_velocity
 from .parameters import Parameters
 from .state import Vehicle
 

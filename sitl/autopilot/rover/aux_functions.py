@@ -13,8 +13,8 @@ from ..mission.notes import Note
 from ..notes import Text
 from . import arming
 from .modes.auto import AUTO
+from .modes.mode_list import NAMES
 from .modes.set_mode import request
-from .modes.table import NAMES
 
 _MODES = {4: 11, 16: 10, 42: 12, 51: 0, 52: 1, 53: 3, 54: 4, 55: 15, 56: 5, 57: 6, 59: 7, 72: 9}
 """Function -> mode, as far as the firmware has the mode."""

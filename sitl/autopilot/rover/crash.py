@@ -22,7 +22,7 @@ from .arming import set_disarmed
 from .control.state import MotorsState
 from .modes import set_mode
 from .modes.hold import HOLD
-from .modes.table import is_autonomous
+from .modes.mode_list import is_autonomous
 from .parameters.safety import Failsafes
 from .state import Vehicle
 

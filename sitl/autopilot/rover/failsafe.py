@@ -24,10 +24,10 @@ from .modes import set_mode
 from .modes.auto import AUTO
 from .modes.hold import HOLD
 from .modes.loiter import LOITER
+from .modes.mode_list import requires_position
 from .modes.rtl import RTL
 from .modes.smart_rtl import SMART_RTL
 from .modes.state import BIT_RADIO, LinksState, Modes
-from .modes.table import requires_position
 from .parameters.safety import Battery, Failsafes
 from .state import Vehicle
 

@@ -9,13 +9,13 @@ from ..estimation.update import update as estimate
 from ..firmware import Firmware
 from ..landing_target import estimator as landing_target
 from .aux_functions import FUNCTIONS as AUX_FUNCTIONS
-from .control.update import init as init_control
-from .control.update import update as control
-from .events import EVENTS
+from .control.control_step import init as init_control
+from .control.control_step import update as control
+from .event_list import EVENTS
 from .mission import COMMANDS
-from .modes.table import NAMES
-from .modes.update import init as init_modes
-from .modes.update import update as decide
+from .modes.decisions import init as init_modes
+from .modes.decisions import update as decide
+from .modes.mode_list import NAMES
 from .parameters import TABLE
 from .state import Vehicle
 

@@ -8,8 +8,8 @@ import math
 from ...core.mavlink import MavCmd, MavSeverity
 from ...core.vectors import Vec3
 from ..mission import item as commands
-from ..mission.commands import Commands, is_speed, turns, whole_seconds
 from ..mission.item import MissionItem
+from ..mission.item_runners import Commands, is_speed, turns, whole_seconds
 from ..mission.location import point
 from ..mission.notes import Note
 from ..navigation import command

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The record of the ground's heights: one square of a grid, around the vehicle; the grid is in the shell
-(``bridge.services.terrain``).
+(``bridge.services.terrain_protocol``).
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...core.constants import TICK_HZ
-from . import motion, servos
-from .motion import Motion, MotionError
+from . import answer, servos
+from .answer import Motion, MotionError
 from .servos import Servos
 
 RATE = TICK_HZ
@@ -47,7 +47,7 @@ class AutopilotEnd:
             self._refuse("an empty datagram")
             return None
         try:
-            decoded = motion.decode(lines[-1])
+            decoded = answer.decode(lines[-1])
         except MotionError as error:
             self._refuse(str(error))
             return None

@@ -11,12 +11,12 @@ from ...autopilot.copter import arming, failsafe, motor_test, parameter_checks
 from ...autopilot.copter.control import frames
 from ...autopilot.copter.modes import (
     auto,
-    commands,
     ground,
     guided_setpoints,
+    mode_commands,
+    mode_list,
     payload_place,
     set_mode,
-    table,
     zigzag,
 )
 from ...autopilot.copter.modes.acro import ACRO
@@ -50,7 +50,7 @@ class CopterAutopilot(BaseAutopilot):
 
     _arming, _set_mode = arming, set_mode
     _auto = auto.AUTO
-    _block_order = table.GCS_BLOCK
+    _block_order = mode_list.GCS_BLOCK
     _checks = parameter_checks.CHECKS
 
     def __init__(self, vehicle: Any) -> None:
@@ -88,7 +88,7 @@ class CopterAutopilot(BaseAutopilot):
 
     def takeoff(self, altitude: float) -> bool:
         """Climb to a height above home [m]."""
-        return int(commands.take_off(self._v.autopilot, altitude)) == 0
+        return int(mode_commands.take_off(self._v.autopilot, altitude)) == 0
 
     def test_motor(self, position: int, in_order: bool, throttle: float, seconds: float) -> bool:
         """Turn motor 1 .. at ``throttle`` 0 .. 1; ``in_order``: counted clockwise from the front.
@@ -175,13 +175,13 @@ class CopterAutopilot(BaseAutopilot):
 
     def change_speed(self, kind: int, speed: float) -> bool:
         """SPEED_TYPE of MAVLink, ``speed`` [m/s]; refused in modes that fly to no position."""
-        kinds = (commands.HORIZONTAL, commands.HORIZONTAL, commands.CLIMB, commands.DESCENT)
+        kinds = (mode_commands.HORIZONTAL, mode_commands.HORIZONTAL, mode_commands.CLIMB, mode_commands.DESCENT)
         if self.mode() not in SPEED_MODES or not 0 <= kind < len(kinds):
             return False
         if self.mode() == auto.AUTO:
             return bool(self._sequencer().change_speed(self._v, kind, speed))
         ap = self._v.autopilot
-        return commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
+        return mode_commands.change_speed(ap.control, ap.params, kinds[kind], speed) == 0
 
     def parameter_changed(self, name: str) -> None:
         """A frame that is set while disarmed holds at once; speeds of legs that are set while a leg is flown hold from
@@ -208,16 +208,16 @@ class CopterAutopilot(BaseAutopilot):
 
     def condition_yaw(self, angle: float, rate: float, direction: int, relative: bool) -> bool:
         """Turn to ``angle`` [rad] at ``rate`` [rad/s]; ``direction`` 1 clockwise, -1 the other way, 0 the shorter."""
-        return commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
+        return mode_commands.condition_yaw(self._v.autopilot, Turn(angle, rate, direction, relative)) == 0
 
     def pause(self, on: bool) -> bool:
-        done = commands.set_paused(self._v.autopilot.modes, on) == 0
+        done = mode_commands.set_paused(self._v.autopilot.modes, on) == 0
         if not done:
             self._say(MavSeverity.INFO, ["Failed to pause" if on else "Failed to resume"])
         return done
 
     def set_roi(self, position: Vector | None) -> None:
         if position is None:
-            commands.clear_roi(self._v.autopilot)
+            mode_commands.clear_roi(self._v.autopilot)
         else:
-            commands.set_roi(self._v.autopilot, Vec3(*position))
+            mode_commands.set_roi(self._v.autopilot, Vec3(*position))

@@ -10,17 +10,17 @@ from ...autopilot.copter.control.altitude_start import is_active_d
 from ...autopilot.copter.control.position_start import is_active_ne
 from ...autopilot.copter.modes.auto import AUTO
 from ...autopilot.copter.modes.guided import GUIDED
+from ...autopilot.copter.modes.mode_list import MODES
 from ...autopilot.copter.modes.rtl import RTL
-from ...autopilot.copter.modes.table import MODES
 from ...core.mavlink import MavType
+from ..firmware_profile import GROUPS, Profile
 from ..mavlink_firmware import Targets
-from ..profile import GROUPS, Profile
-from ..services.setpoints import SetpointService
+from ..services.setpoint_messages import SetpointService
 from ..telemetry.motion import global_position
 from ..telemetry.shell import CAPABILITIES, TERMINATION, TERRAIN
 from .autopilot import CopterAutopilot
-from .commands import COMMANDS
 from .core import UNITS
+from .vehicle_commands import COMMANDS
 
 _NO_WIND = 90
 """A wind from 180 deg [2 deg], as ArduCopter tells the one that it does not know."""

@@ -19,7 +19,7 @@ from ...autopilot.copter.modes.guided_setpoints import (
     stop,
     takes_attitudes,
 )
-from ...autopilot.copter.terrain import is_flat
+from ...autopilot.copter.terrain_following import is_flat
 from ...core.algebra import IDENTITY, ZERO, quat_norm_squared
 from ...core.kernels import law
 from ...core.records import Floats
@@ -27,36 +27,38 @@ from ...core.scalars import finite
 from ...core.vectors import Quat, Vec3
 from ...vehicle.copter import Copter
 from ..locations import FRAMES_TERRAIN, GLOBAL_FRAMES, LocalPosition, local_position
-from ..services import setpoints
-from ..services.follow import take_position
+from ..services import setpoint_messages
+from ..services.follow_target import take_position
 from ..telemetry.motion import GlobalPositionInt
 
 OVER_HOME = 1
 """FOLL_ALT_TYPE"""
 FASTEST = 1000.0
 """[m/s], of any component."""
-RATES_IGNORED = setpoints.ROLL_RATE_IGNORED | setpoints.PITCH_RATE_IGNORED | setpoints.BODY_YAW_RATE_IGNORED
+RATES_IGNORED = (
+    setpoint_messages.ROLL_RATE_IGNORED | setpoint_messages.PITCH_RATE_IGNORED | setpoint_messages.BODY_YAW_RATE_IGNORED
+)
 UNIT = 1e-3
 """The square of a quaternion's length is within this of 1."""
 
 
 @law
-def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
+def position_target_local(m: setpoint_messages.SetPositionTargetLocalNed, v: Copter, sender: int) -> None:
     """Fly to a location, with a velocity or an acceleration, in a local frame."""
     if not is_guided(v.autopilot.modes):
         return
-    if m.coordinate_frame not in setpoints.LOCAL_FRAMES:
+    if m.coordinate_frame not in setpoint_messages.LOCAL_FRAMES:
         stop(v)
         return
-    follow(v, setpoints.local_target(m, v.autopilot.estimate), (m.type_mask & setpoints.FORCE) != 0)
+    follow(v, setpoint_messages.local_target(m, v.autopilot.estimate), (m.type_mask & setpoint_messages.FORCE) != 0)
 
 
 @law
-def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
+def position_target_global(m: setpoint_messages.SetPositionTargetGlobalInt, v: Copter, sender: int) -> None:
     """The same with a location on the globe; before there is an origin it is ignored."""
     if not is_guided(v.autopilot.modes):
         return
-    frame, use_pos = m.coordinate_frame, (m.type_mask & setpoints.POSITION_IGNORED) == 0
+    frame, use_pos = m.coordinate_frame, (m.type_mask & setpoint_messages.POSITION_IGNORED) == 0
     if use_pos and not (frame in GLOBAL_FRAMES and finite(m.alt) and is_location(m.lat_int, m.lon_int)):
         stop(v)
         return
@@ -64,13 +66,13 @@ def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Copter, s
     if use_pos and frame in FRAMES_TERRAIN and not is_flat(v):
         follow_over_ground(v, m, position)
     elif position.is_known or not use_pos:
-        follow(v, setpoints.global_target(m, position.pos), (m.type_mask & setpoints.FORCE) != 0)
+        follow(v, setpoint_messages.global_target(m, position.pos), (m.type_mask & setpoint_messages.FORCE) != 0)
 
 
 @law
-def follow_over_ground(v: Copter, m: setpoints.SetPositionTargetGlobalInt, position: LocalPosition) -> None:
+def follow_over_ground(v: Copter, m: setpoint_messages.SetPositionTargetGlobalInt, position: LocalPosition) -> None:
     """Fly to a location at a height above the ground; with a velocity that is nothing that can be flown."""
-    target = setpoints.global_target(m, Vec3(position.pos.x, position.pos.y, -m.alt))
+    target = setpoint_messages.global_target(m, Vec3(position.pos.x, position.pos.y, -m.alt))
     if target.use_vel or target.use_acc or not is_finite(target):
         stop(v)
     elif position.is_known:
@@ -78,7 +80,7 @@ def follow_over_ground(v: Copter, m: setpoints.SetPositionTargetGlobalInt, posit
 
 
 @law
-def yaw_of(target: setpoints.Target) -> YawSetpoint:
+def yaw_of(target: setpoint_messages.Target) -> YawSetpoint:
     """The heading that a target asks for."""
     if target.use_yaw or target.use_yaw_rate:
         return YawSetpoint(target.use_yaw, target.yaw, target.use_yaw_rate, target.yaw_rate, target.relative_yaw)
@@ -86,7 +88,7 @@ def yaw_of(target: setpoints.Target) -> YawSetpoint:
 
 
 @law
-def follow(v: Copter, target: setpoints.Target, is_force: bool) -> None:
+def follow(v: Copter, target: setpoint_messages.Target, is_force: bool) -> None:
     """Fly what a target asks for; ``is_force``: its acceleration is a force, which cannot be flown."""
     yaw = yaw_of(target)
     if not is_finite(target) or (is_force and target.use_acc) or is_absurd(target.vel):
@@ -104,7 +106,7 @@ def follow(v: Copter, target: setpoints.Target, is_force: bool) -> None:
 
 
 @law
-def is_finite(target: setpoints.Target) -> bool:
+def is_finite(target: setpoint_messages.Target) -> bool:
     """Whether all numbers that are asked for are."""
     numbers = target.pos + target.vel + target.acc
     return finite(numbers.x + numbers.y + numbers.z + target.yaw + target.yaw_rate)
@@ -123,15 +125,15 @@ def is_location(lat: int, lon: int) -> bool:
 
 
 @law
-def attitude_target(m: setpoints.SetAttitudeTarget, v: Copter, sender: int) -> None:
+def attitude_target(m: setpoint_messages.SetAttitudeTarget, v: Copter, sender: int) -> None:
     """Fly an attitude, which turns on with the body rates, or body rates alone. Rates are all given or all ignored."""
     if not takes_attitudes(v.autopilot.modes):
         return
-    mask, use_attitude = m.type_mask, (m.type_mask & setpoints.ATTITUDE_IGNORED) == 0
-    ignored, given = mask & RATES_IGNORED, setpoints.rotation(m.q)
+    mask, use_attitude = m.type_mask, (m.type_mask & setpoint_messages.ATTITUDE_IGNORED) == 0
+    ignored, given = mask & RATES_IGNORED, setpoint_messages.rotation(m.q)
     rates = m.rates if ignored == 0 else ZERO
     if (
-        (mask & setpoints.THRUST_IGNORED) != 0
+        (mask & setpoint_messages.THRUST_IGNORED) != 0
         or (ignored != 0 and ignored != RATES_IGNORED)
         or (use_attitude and not is_unit(m.q))
         or not finite(rates.x + rates.y + rates.z + m.thrust)

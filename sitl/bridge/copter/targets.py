@@ -19,7 +19,7 @@ from ...core.mavlink import MavFrame
 from ...core.records import Floats
 from ...core.vectors import Vec2, Vec3
 from ...vehicle.copter import Copter
-from ..services.setpoints import ACCELERATION_IGNORED, POSITION_IGNORED, VELOCITY_IGNORED, YAWS_IGNORED
+from ..services.setpoint_messages import ACCELERATION_IGNORED, POSITION_IGNORED, VELOCITY_IGNORED, YAWS_IGNORED
 from ..telemetry.own import NavControllerOutput, PositionTargetGlobalInt
 from ..telemetry.units import DEG, boot_ms, int16, int32, uint16
 from ..wire.message import Message, consecutive

@@ -13,7 +13,7 @@ from ...core.elementary import atan2, hypot
 from ...core.record_reader import RecordReader
 from ..dialect import MessageType, message
 from ..telemetry.units import DEG, int16, uint16
-from . import ranging, sensor, sticks, truth
+from . import ranging, rc_inputs, sensor, truth
 from .protocol import LATEST_US, PHYSICS, RefusedError, Sender
 from .ranging import RangeWriter, ScanWriter
 
@@ -215,7 +215,7 @@ class Inbox:
             GPS_KIND.id: (GpsReader(v),),
             sensor.BATTERY_KIND.id: (sensor.BatteryReader(v),),
             sensor.WHEELS_KIND.id: (sensor.WheelReader(v),),
-            sticks.KIND.id: (sticks.SticksReader(v),),
+            rc_inputs.KIND.id: (rc_inputs.SticksReader(v),),
             ranging.VECTOR.id: (ranging.RangeReader(v), truth.HitReader(v)),
             ranging.DISTANCE.id: (ranging.DistanceReader(v),),
             ranging.SCAN.id: (ranging.ScanReader(v, int(v.physics.airframe.lidar_samples)),),

@@ -19,7 +19,7 @@ from ...core.mavlink import MavAutopilot, MavCmd, MavResult, MavSeverity
 from ...physics.carried import Carried
 from ..dialect import message
 from ..frame import Frame, Splitter
-from . import controls, sticks, truth
+from . import controls, rc_inputs, truth
 from .controls import ForeignClock
 from .measurements import Measurements
 from .protocol import RESEED, RefusedError
@@ -222,7 +222,7 @@ class PhysicsEnd:
         self.clock.sent(self._now)
         self._tick = self.measurements.tick()
         if self._sticks:
-            kind, payload = sticks.frame_for(self._is_foreign, self._now, self._sticks)
+            kind, payload = rc_inputs.frame_for(self._is_foreign, self._now, self._sticks)
             self._tick = self._frame(kind, payload) + self._tick
             self._sticks = ()
         if self._truth_every_us > 0 and self._truth_due_us <= self._now:

@@ -7,7 +7,7 @@ from ...autopilot import home
 from ...autopilot.arming_checks import AHRS_TYPE, NEED_POSITION, TEXTS
 from ...autopilot.rover import arming, motor_test, parameter_checks
 from ...autopilot.rover.control import servos
-from ...autopilot.rover.modes import guided_setpoints, set_mode, table
+from ...autopilot.rover.modes import guided_setpoints, mode_list, set_mode
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.state import Modes
 from ...autopilot.rover.navigation import waypoint
@@ -22,7 +22,7 @@ class RoverAutopilot(BaseAutopilot):
 
     _arming, _set_mode = arming, set_mode
     _auto = AUTO
-    _block_order = table.GCS_BLOCK
+    _block_order = mode_list.GCS_BLOCK
     _checks = parameter_checks.CHECKS
 
     # ------------------------------------------------------------------ outputs

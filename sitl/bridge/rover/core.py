@@ -9,7 +9,7 @@ from ...core.kernels import unit
 from ...vehicle.rover import Rover, advance
 from ..core_link import CoreUnits
 from ..services import odometry
-from ..services.follow import follow_target
+from ..services.follow_target import follow_target
 from ..services.landing_target import landing_target
 from ..services.proximity import distance, obstacle_3d, obstacles
 from ..services.rc import rc_channels_override
@@ -18,9 +18,9 @@ from ..telemetry.flow import take_flow
 from ..wire.choose import choose_builder, choose_taker, choose_targets
 from ..wire.fleet import run_slots
 from ..wire.link import Instruments, Limits, Links, receive_port, run_vehicle, transmit_links
+from .joystick import manual_control
 from .setpoints import attitude_target, other_position, position_target_global, position_target_local
-from .sticks import manual_control
-from .telemetry import MESSAGES
+from .status_messages import MESSAGES
 
 BUILDERS = compiled(MESSAGES)
 TAKERS = (

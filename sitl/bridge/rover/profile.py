@@ -7,16 +7,16 @@ from typing import Any
 
 from ...autopilot.rover.modes.auto import AUTO
 from ...autopilot.rover.modes.guided import GUIDED
+from ...autopilot.rover.modes.mode_list import MODES, is_autonomous
 from ...autopilot.rover.modes.rtl import RTL
-from ...autopilot.rover.modes.table import MODES, is_autonomous
 from ...core.mavlink import MavType
+from ..firmware_profile import GROUPS, Profile
 from ..mavlink_firmware import Targets
-from ..profile import GROUPS, Profile
 from ..telemetry.shell import CAPABILITIES
 from .autopilot import RoverAutopilot
-from .commands import COMMANDS
 from .core import UNITS
 from .setpoints import RoverSetpoints
+from .vehicle_commands import COMMANDS
 
 
 def targets(v: Any) -> Targets:

@@ -29,32 +29,35 @@ from ...core.scalars import constrain, finite
 from ...core.vectors import Vec3
 from ...vehicle.rover import Rover
 from ..locations import GLOBAL_FRAMES, local_position
-from ..services import setpoints
-from ..services.follow import take_position
+from ..services import setpoint_messages
+from ..services.follow_target import take_position
 from ..telemetry.motion import GlobalPositionInt
 
 if TYPE_CHECKING:
     from .autopilot import RoverAutopilot
 
-LOCAL_NUMBER, GLOBAL_NUMBER = setpoints.SetPositionTargetLocalNed.kind.id, setpoints.SetPositionTargetGlobalInt.kind.id
+LOCAL_NUMBER, GLOBAL_NUMBER = (
+    setpoint_messages.SetPositionTargetLocalNed.kind.id,
+    setpoint_messages.SetPositionTargetGlobalInt.kind.id,
+)
 
 
 @law
-def position_target_local(m: setpoints.SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
+def position_target_local(m: setpoint_messages.SetPositionTargetLocalNed, v: Rover, sender: int) -> None:
     """Drive to a location or with a velocity in a local frame."""
     estimate = v.autopilot.estimate
-    if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in setpoints.LOCAL_FRAMES:
-        follow(v, setpoints.local_target(m, estimate), m.vel.x < 0.0, LOCAL_NUMBER)
+    if estimate.origin_set and is_open(v.autopilot.modes) and m.coordinate_frame in setpoint_messages.LOCAL_FRAMES:
+        follow(v, setpoint_messages.local_target(m, estimate), m.vel.x < 0.0, LOCAL_NUMBER)
 
 
 @law
-def position_target_global(m: setpoints.SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
+def position_target_global(m: setpoint_messages.SetPositionTargetGlobalInt, v: Rover, sender: int) -> None:
     """The same with a location on the globe, whose height means nothing."""
     if m.coordinate_frame not in GLOBAL_FRAMES or not is_open(v.autopilot.modes):
         return
     position = local_position(v.autopilot, m.lat_int, m.lon_int, 0.0, MavFrame.GLOBAL)
-    if position.is_known or (m.type_mask & setpoints.POSITION_IGNORED) != 0:
-        follow(v, setpoints.global_target(m, position.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
+    if position.is_known or (m.type_mask & setpoint_messages.POSITION_IGNORED) != 0:
+        follow(v, setpoint_messages.global_target(m, position.pos), m.vel.x < 0.0, GLOBAL_NUMBER)
 
 
 @law
@@ -64,7 +67,7 @@ def other_position(m: GlobalPositionInt, v: Rover, sender: int) -> None:
 
 
 @law
-def follow(v: Rover, target: setpoints.Target, backward: bool, message: int) -> None:
+def follow(v: Rover, target: setpoint_messages.Target, backward: bool, message: int) -> None:
     """Drive what a target asks for.
 
     Args:
@@ -93,7 +96,7 @@ def follow(v: Rover, target: setpoints.Target, backward: bool, message: int) -> 
 
 
 @law
-def is_finite(target: setpoints.Target) -> bool:
+def is_finite(target: setpoint_messages.Target) -> bool:
     """Whether all numbers that are asked for are; down does not count."""
     numbers = target.pos + target.vel
     return finite(target.yaw + target.yaw_rate + numbers.x + numbers.y)
@@ -114,22 +117,22 @@ def full_speed(v: Rover) -> float:
 
 
 @law
-def attitude_target(m: setpoints.SetAttitudeTarget, v: Rover, sender: int) -> None:
+def attitude_target(m: setpoint_messages.SetAttitudeTarget, v: Rover, sender: int) -> None:
     """Thrust -1 .. 1 is a share of WP_SPEED; the heading is that of the quaternion, or turns with body_yaw_rate."""
     modes = v.autopilot.modes
-    if not is_open(modes) or (m.type_mask & setpoints.THRUST_IGNORED) != 0 or not finite(m.thrust):
+    if not is_open(modes) or (m.type_mask & setpoint_messages.THRUST_IGNORED) != 0 or not finite(m.thrust):
         return
     speed = constrain(m.thrust, -1.0, 1.0) * full_speed(v)
-    if (m.type_mask & setpoints.BODY_YAW_RATE_IGNORED) == 0:
+    if (m.type_mask & setpoint_messages.BODY_YAW_RATE_IGNORED) == 0:
         if finite(m.rates.z):
             set_turn_rate_and_speed(modes, v.time_us, m.rates.z, speed)
         return
-    given = setpoints.rotation(m.q)
+    given = setpoint_messages.rotation(m.q)
     if given.is_given:
         set_heading_and_speed(modes, v.time_us, euler_of(given.q).yaw, speed)
 
 
-class RoverSetpoints(setpoints.SetpointService):
+class RoverSetpoints(setpoint_messages.SetpointService):
     """Mission items with ``current`` 2; in missions that allow set-points, too."""
 
     def _listens(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ...autopilot.rover.modes.guided import GUIDED, HEADING_AND_SPEED
 from ...autopilot.rover.modes.mode import END_OF_PATH, NO_DESTINATION
-from ...autopilot.rover.modes.table import destination, is_autonomous
+from ...autopilot.rover.modes.mode_list import destination, is_autonomous
 from ...core.elementary import atan2, hypot
 from ...core.geodesy import add_offset
 from ...core.kernels import law

@@ -3,10 +3,10 @@
 
 from .calibration import CalibrationService
 from .camera import CameraService
-from .commands import CommandService
+from .command_protocol import CommandService
 from .compass_calibration import CompassCalibrationService
 from .config_error import ConfigErrorService
-from .faults import FaultService
+from .failure_injection import FaultService
 from .flight_state import FlightStateService
 from .ftp import FtpService
 from .gripper import GripperService
@@ -14,21 +14,21 @@ from .high_latency import HighLatencyService
 from .home import HomeService
 from .liveness import HeartbeatService, PingService, TimesyncService
 from .log_download import LogDownloadService
-from .mission import MissionService
+from .mission_protocol import MissionService
 from .motor_test import MotorTestService
 from .mount import MountService
 from .old_points import OldPointService
 from .outputs import OutputService
 from .parachute import ParachuteService
-from .parameters import ParameterService
+from .parameter_protocol import ParameterService
 from .senders import SenderService
 from .service import Service
-from .setpoints import SetpointService
+from .setpoint_messages import SetpointService
 from .signing import SigningService
 from .sprayer import SprayerService
 from .statustext import EventService, PreArmService, StatusTextService
 from .streams import StreamService
-from .terrain import TerrainService
+from .terrain_protocol import TerrainService
 from .tuning import TuningService
 from .winch import WinchService
 

@@ -25,7 +25,7 @@ from ..channel import Channel
 from ..dialect import message
 from ..host import Host
 from ..listener import Sender
-from .parameters import ParameterService
+from .parameter_protocol import ParameterService
 from .service import Handler, Service
 from .statustext import StatusTextService
 

@@ -23,7 +23,7 @@ from .calibration import CalibrationService
 from .camera import CameraService
 from .command import Command, Entry, answered, is_on_earth, result
 from .compass_calibration import CompassCalibrationService
-from .faults import FaultService
+from .failure_injection import FaultService
 from .gripper import GripperService
 from .high_latency import HighLatencyService
 from .home import HomeService

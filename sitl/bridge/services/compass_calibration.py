@@ -25,7 +25,7 @@ from ...core.sums import lengths, matrix_product
 from ...core.vectors import Euler, Vec3
 from ..dialect import message
 from ..host import Host
-from .parameters import ParameterService
+from .parameter_protocol import ParameterService
 from .service import Service
 from .statustext import StatusTextService
 

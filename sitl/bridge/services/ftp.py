@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``files.py``, tells their CRC-32,
-takes missions as files, and keeps files and folders of clients (``client_files.py``).
+"""MAVLink FTP (https://mavlink.io/en/services/ftp.html): lists and reads the files of ``served_files.py``, gives
+their CRC-32, takes missions as files, and keeps files and folders of clients (``client_files.py``).
 
 Everything else is refused by its own error.
 """
@@ -17,7 +17,7 @@ from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from ..metadata import file_crc
-from . import files
+from . import served_files
 from .client_files import ClientFiles
 from .service import Handler, Service
 
@@ -63,7 +63,7 @@ class _Answered(NamedTuple):
 class _Session:
     """The one file that a client has open."""
 
-    def __init__(self, data: bytes | files.Log, sender: Sender, number: int, written: str = "") -> None:
+    def __init__(self, data: bytes | served_files.Log, sender: Sender, number: int, written: str = "") -> None:
         self.data, self.sender, self.number = data, sender, number
         self.written = written
         """Path of a file that is being written; "": it is read."""
@@ -155,8 +155,8 @@ class FtpService(Service):
         found = self._sessions.get(request.channel)
         if found is not None and (request.opcode == RESET or found.number == request.session):
             del self._sessions[request.channel]
-            if found.written in files.MISSIONS and request.opcode == TERMINATE:
-                if not files.write(self.bridge, found.written, found.data[:]):
+            if found.written in served_files.MISSIONS and request.opcode == TERMINATE:
+                if not served_files.write(self.bridge, found.written, found.data[:]):
                     self._refuse(request, FAIL)
                     return
         self._reply(request, b"", request.offset)
@@ -169,7 +169,7 @@ class FtpService(Service):
 
     def _create(self, request: _Request) -> None:
         path = self._path(request)
-        error = 0 if path in files.MISSIONS else self._clients.create(path)
+        error = 0 if path in served_files.MISSIONS else self._clients.create(path)
         self._begin_to_write(request, path, b"", error if request.data else INVALID_DATA_SIZE)
 
     def _open_to_write(self, request: _Request) -> None:
@@ -210,7 +210,7 @@ class FtpService(Service):
             self._refuse(request, FAIL)
             return
         data = bytes(found.data[: request.offset]).ljust(request.offset, b"\0") + request.data + found.data[end:]
-        error = 0 if found.written in files.MISSIONS else self._clients.write(found.written, data)
+        error = 0 if found.written in served_files.MISSIONS else self._clients.write(found.written, data)
         if error:
             self._refuse(request, error)
             return
@@ -221,19 +221,19 @@ class FtpService(Service):
         data = self._file(request)
         if data is None:
             return
-        key = data.key if isinstance(data, files.Log) else data
+        key = data.key if isinstance(data, served_files.Log) else data
         if self._summed[0] is not key and self._summed[0] != key:
-            self._summed = (key, data.crc() if isinstance(data, files.Log) else file_crc(data))
+            self._summed = (key, data.crc() if isinstance(data, served_files.Log) else file_crc(data))
         self._reply(request, struct.pack("<I", self._summed[1]))
 
     def _path(self, request: _Request) -> str:
         """Without slashes before and behind it."""
         return request.data.split(b"\0", 1)[0].decode("ascii", "replace").strip("/")
 
-    def _file(self, request: _Request) -> bytes | files.Log | None:
+    def _file(self, request: _Request) -> bytes | served_files.Log | None:
         """What is in the file that is asked for; None when there is none; the client gets the error."""
         path, _, query = self._path(request).partition("?")
-        data = files.read(self.bridge, self._clients, path, query.split("&"))
+        data = served_files.read(self.bridge, self._clients, path, query.split("&"))
         if data is None:
             self._refuse(request, FILE_NOT_FOUND)
         return data
@@ -243,7 +243,7 @@ class FtpService(Service):
         if not request.data:
             self._refuse(request, INVALID_DATA_SIZE)
             return
-        entries = files.listing(self.bridge, self._clients, self._path(request))
+        entries = served_files.listing(self.bridge, self._clients, self._path(request))
         if entries is None:
             self._refuse(request, FILE_NOT_FOUND)
             return

@@ -14,7 +14,7 @@ from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .service import Handler, StatefulService
-from .terrain import TerrainService
+from .terrain_protocol import TerrainService
 
 HOME, ORIGIN = message("HOME_POSITION").id, message("GPS_GLOBAL_ORIGIN").id
 LOOK_US = 50_000

@@ -16,8 +16,8 @@ from ...core.scalars import finite
 from ...core.vectors import Euler, Vec3
 from ...vehicle.record import Vehicle
 from ..wire.message import Message, consecutive
-from .follow import vector
-from .setpoints import rotation
+from .follow_target import vector
+from .setpoint_messages import rotation
 
 
 class VisionPosition(Message, name="VISION_POSITION_ESTIMATE"):

@@ -16,7 +16,7 @@ from ..dialect import message
 from ..host import Host
 from ..listener import Sender
 from .fence_and_rally import counted
-from .mission import MissionService
+from .mission_protocol import MissionService
 from .service import Handler, StatefulService
 from .statustext import StatusTextService
 

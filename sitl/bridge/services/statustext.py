@@ -21,7 +21,7 @@ from ..host import Host
 from .flight_state import FlightStateService
 from .home import HomeService
 from .service import Service, StatefulService
-from .terrain import TerrainService
+from .terrain_protocol import TerrainService
 
 TEXT_BYTES = 50
 KIND = message("STATUSTEXT")

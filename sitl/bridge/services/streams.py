@@ -22,7 +22,7 @@ from .command import Command
 from .high_latency import HIGH_LATENCY2, HighLatencyService
 from .service import Handler, Service
 from .statustext import StatusTextService
-from .terrain import REPORT, TerrainService
+from .terrain_protocol import REPORT, TerrainService
 
 AVAILABLE_MODES = message("AVAILABLE_MODES")
 OF_PARTS = frozenset(

@@ -11,11 +11,11 @@ from ..dialect import message
 from ..mavlink_firmware import MavlinkFirmware
 from ..wire.choose import Builder, message_of
 from ..wire.port import Port
-from . import channels, fence, flow, motion, ranging, sensors, status
+from . import channels, fence_status, flow, motion, ranging, sensors, status
 from .plain import build
 from .shell import shell_builders
 
-_MODULES = (motion, sensors, ranging, status, channels, fence, flow)
+_MODULES = (motion, sensors, ranging, status, channels, fence_status, flow)
 _registered: dict[int, Builder] = {}
 
 

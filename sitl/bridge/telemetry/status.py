@@ -15,7 +15,7 @@ from ...core.records import Ints
 from ...vehicle.record import Vehicle
 from ..wire.message import Message
 from ..wire.port import Port
-from .fence import is_at_work
+from .fence_status import is_at_work
 from .units import boot_ms, int16, int32, percent, uint16
 
 PRESENT = (

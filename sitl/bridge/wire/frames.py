@@ -13,8 +13,8 @@ import numpy as np
 from ...core.kernels import inlined, law
 from ...core.memory import Bytes, bytes_at
 from ..frame import CHECKSUM, HEADER_V1, HEADER_V2, MARK_V1, MARK_V2, SIGNATURE, SIGNED
+from .dialect_rows import BASE_SIZES, CRC_EXTRAS, PAYLOAD_MAX, SIZES, row_of
 from .port import INCOMING, OUT, OUT_BYTES, OUT_FRAMES, PAYLOAD_BYTES, Port, note_sender
-from .tables import BASE_SIZES, CRC_EXTRAS, PAYLOAD_MAX, SIZES, row_of
 
 COMPONENT = 1
 """MAV_COMP_ID_AUTOPILOT1"""

@@ -21,7 +21,7 @@ from ..kernels import Unit
 from ..order import KERNELS_PATH, Order
 from .library import CONTENTS, SLOT, TABLE, call_symbol, kernel_symbol, unit_key
 from .objects import Objects
-from .targets import TARGETS, Target
+from .target_machines import TARGETS, Target
 
 
 class Piece(NamedTuple):

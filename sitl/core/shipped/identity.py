@@ -13,8 +13,8 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
-from ..fingerprint import is_record, items
-from ..kernels import UNITS, Unit
+from ..fingerprint import borders, call_of, is_record, items
+from ..kernels import Unit
 from ..numba_tuning import TRUST, law_options
 from ..records import Record
 
@@ -56,7 +56,7 @@ def identity(unit: Unit, made_by: str, records: Iterable[type[Record]]) -> str:
         made_by: what it depends on besides the functions that it reaches.
         records: classes of the records that it is called with.
     """
-    borders = {id(other.function) for other in UNITS.values() if other is not unit}
+    others = borders(unit)
     found: set[str] = set()
     seen: set[int] = set()
     known: set[Any] = set()  # laws of properties of the records that it reaches: what else is loaded does not count
@@ -74,8 +74,8 @@ def identity(unit: Unit, made_by: str, records: Iterable[type[Record]]) -> str:
             law = _laws[id(function)] = _Law(function)
         found.add(law.digest)
         for name, used in law.functions:
-            if id(used) in borders:
-                found.add(f"unit {name}")
+            if id(used) in others:
+                found.add(call_of(name, others[id(used)]))
             else:
                 waiting.append(used)
         possible += law.properties

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from .targets import Target, usable
+from .target_machines import Target, usable
 
 FOLDER_VARIABLE = "SITL_SHIPPED_DIR"
 """Environment variable: another folder of libraries; empty: none is used, all is compiled here."""

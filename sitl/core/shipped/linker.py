@@ -18,7 +18,7 @@ from pathlib import Path
 from ...errors import MissingExtra
 from ..code_cache import BuildError
 from .object_code import stub
-from .targets import Target
+from .target_machines import Target
 
 SYSTEM = {"libm.so.6": ("fmod",), "libc.so.6": ("memcpy", "memmove", "memset", "memcmp", "bcmp")}
 """System library -> what machine code may call of it."""

@@ -35,7 +35,7 @@ from .library import PYTHON, SLOT, TABLE, call_symbol, kernel_symbol, own_symbol
 from .objects import Objects
 from .python_calls import entry_for_python
 from .signature import HEADER, NUMBERS, hints_of, leaves, put_together
-from .targets import Target
+from .target_machines import Target
 
 _OPTIMISE = 3
 _NUMBERS = {float: types.float64, int: types.int64, bool: types.boolean}

@@ -7,7 +7,7 @@ import platform
 from pathlib import Path
 from typing import NamedTuple
 
-from .targets import TARGETS, Target
+from .target_machines import TARGETS, Target
 
 _OLDEST = {"x86_64": "x86-64", "aarch64": "generic"}
 ENVIRONMENT = {

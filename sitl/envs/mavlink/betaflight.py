@@ -11,12 +11,12 @@ from sitl.core.constants import GRAVITY
 from sitl.core.elementary import cos, sin
 from sitl.core.mavlink import MavModeFlag, MavResult
 from sitl.errors import NotReadyError
-from sitl.foreign.betaflight.sticks import ACRO as _ACRO
-from sitl.foreign.betaflight.sticks import MODES
+from sitl.foreign.betaflight.receiver import ACRO as _ACRO
+from sitl.foreign.betaflight.receiver import MODES
 
+from .last_messages import StepTelemetry
 from .preparation import INTERVAL_US, ORIGIN, check_reports, set_intervals, until
-from .setpoints import COPTER, RATES_ONLY, TARGET, Encode
-from .telemetry import StepTelemetry
+from .target_messages import COPTER, RATES_ONLY, TARGET, Encode
 
 ACRO, ANGLE = _ACRO.number, MODES[1].number
 SETPOINTS: dict[str, Encode] = {name: COPTER[name] for name in ("rates", "rc")}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The environment's end of MAVLink for a fleet, compiled: set-points become frames, frames become what is known.
 
-The bytes are those that ``setpoints`` and ``telemetry`` of this package make and read for one vehicle.
+The bytes are those that ``target_messages`` and ``last_messages`` of this package make and read for one vehicle.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from sitl.bridge.frame import HEADER_V2
 from sitl.bridge.services.rc import RcChannelsOverride
-from sitl.bridge.services.setpoints import SetAttitudeTarget, SetPositionTargetLocalNed
+from sitl.bridge.services.setpoint_messages import SetAttitudeTarget, SetPositionTargetLocalNed
 from sitl.bridge.telemetry.heartbeat import Heartbeat
 from sitl.bridge.telemetry.motion import Attitude, LocalPositionNed
 from sitl.bridge.telemetry.ranging import DebugFloatArray
@@ -29,9 +29,10 @@ from sitl.core.vectors import Euler, Vec3
 from sitl.worlds.shapes import from_heading, from_ned, to_heading, to_ned
 
 from ...core.elementary import sincos
-from ..robots.truth import STATE
+from ..robots.true_state import STATE
+from .last_messages import HIT, PART, SCAN_NAME
 from .reports import REPORTED, read_report, show_report
-from .setpoints import (
+from .target_messages import (
     ACCELERATION_ONLY,
     ATTITUDE_AND_RATES,
     POSITION_ONLY,
@@ -40,7 +41,6 @@ from .setpoints import (
     VELOCITY_ONLY,
     YAWS_IGNORED,
 )
-from .telemetry import HIT, PART, SCAN_NAME
 
 GROUND_STATION, COMPONENT = 255, 190
 """MAVLink ids of the environment."""

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from sitl.autopilot.params.files import text_of
+from sitl.autopilot.params.parm_files import text_of
 from sitl.bridge.hil.protocol import BASE_PORT
 from sitl.client.byte_socket import ByteStream, open_stream
 from sitl.client.commands import command_number
@@ -23,10 +23,10 @@ from sitl.core.mavlink import ARM_FORCED, MavResult
 from sitl.errors import LinkLostError, NotReadyError, OptionError
 from sitl.foreign import ardupilot, px4
 from sitl.foreign.betaflight import configuration
+from sitl.foreign.betaflight.betaflight_session import starter
 from sitl.foreign.betaflight.clients import InProcess
 from sitl.foreign.betaflight.face import Face
 from sitl.foreign.betaflight.host import BetaflightHost
-from sitl.foreign.betaflight.session import starter
 from sitl.foreign.choice import ARDUPILOT, BETAFLIGHT, PX4, WIND, Choice
 from sitl.foreign.hil_host import HilHost
 from sitl.foreign.json_host import ANSWERS, JsonHost
@@ -38,7 +38,7 @@ from sitl.plants.local import LocalPlant
 from sitl.plants.physics_server import SimulatedPlant
 from sitl.run.runner import BASE_TCP_PORT
 
-from .telemetry import StepTelemetry
+from .last_messages import StepTelemetry
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 _SLICE_US = 20_000

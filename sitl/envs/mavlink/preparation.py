@@ -17,8 +17,8 @@ from sitl.core.mavlink import ARM_FORCED, MavModeFlag, MavResult
 from sitl.core.sums import lengths
 from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 
+from .last_messages import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
 from .reports import LANDED
-from .telemetry import ATTITUDE, GLOBAL, LANDED_STATE, ORIGIN, POSITION, SCAN, SECTORS
 
 _REBOOT = command_number("PREFLIGHT_REBOOT_SHUTDOWN")
 INTERVAL_US = 100_000

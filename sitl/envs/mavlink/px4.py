@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from sitl.bridge.dialect import message
-from sitl.bridge.services.setpoints import (
+from sitl.bridge.services.setpoint_messages import (
     ACCELERATION_IGNORED,
     POSITION_IGNORED,
     VELOCITY_IGNORED,
@@ -18,6 +18,7 @@ from sitl.core.elementary import cos, sin
 from sitl.core.mavlink import MavFrame, MavResult
 from sitl.errors import NotReadyError
 
+from .last_messages import ESTIMATOR, StepTelemetry
 from .preparation import (
     INTERVAL_US,
     ORIGIN,
@@ -29,8 +30,7 @@ from .preparation import (
     set_mode,
     until,
 )
-from .setpoints import LOCAL, RATES_ONLY, TARGET, TURN_AND_LEAN, Encode, Message, leaning, position
-from .telemetry import ESTIMATOR, StepTelemetry
+from .target_messages import LOCAL, RATES_ONLY, TARGET, TURN_AND_LEAN, Encode, Message, leaning, position
 
 ALTCTL, POSCTL, OFFBOARD = 2 << 16, 3 << 16, 6 << 16
 """Modes of PX4's, as HEARTBEAT reports them: a main mode in the third byte, one below it in the fourth. The first two

@@ -35,7 +35,7 @@ from ..mavlink.preparation import (
     refusal,
 )
 from ..mavlink.reports import LANDED
-from ..mavlink.setpoints import ATTITUDE_ALONE, LOCAL, POSITION_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
+from ..mavlink.target_messages import ATTITUDE_ALONE, LOCAL, POSITION_ONLY, TARGET, VELOCITY_ONLY, YAWS_IGNORED
 from ..options import EnvOptionError, unknown
 from .robot import Pose
 from .vehicles import EpisodeState, Vehicles, VehicleSetup

@@ -44,7 +44,7 @@ from ..mavlink.compiled import robot_arrays
 from ..mavlink.guard import GUARDED, Watch
 from ..mavlink.preparation import ALIGN_US, RESETS, request_again, set_bit, set_intervals, set_mode
 from ..mavlink.reports import LANDED, show_report
-from ..mavlink.setpoints import Message
+from ..mavlink.target_messages import Message
 from ..options import COMMON, EnvOptionError, unknown, unknown_option
 from .at_connection import SocketVehicles
 from .boots import check_boots, draw
@@ -54,7 +54,7 @@ from .in_process import InProcessVehicles
 from .kind import robot_kind, volume
 from .moves import BEGINS, BOOT
 from .robot import Floats, Pose
-from .truth import TRUE_REPORT
+from .true_state import TRUE_REPORT
 from .vehicles import INPROCESS, NOT_STARTED, AutopilotOptions, EpisodeState, Vehicles, VehicleSetup
 
 _TRIES = 20

@@ -16,7 +16,7 @@ from sitl.core.constants import TICK_S
 from sitl.physics.native.copter.state import ALL_DRIVEN
 
 from ..actions import ACCELERATION, ATTITUDE, LOITER_STICKS, MOTORS, POSITION, RATES, RC_OVERRIDE, THRUST, VELOCITY
-from ..mavlink import betaflight, px4, setpoints
+from ..mavlink import betaflight, px4, target_messages
 from .kind import FAR, RobotKind, pulses
 from .robot import Floats
 
@@ -52,7 +52,7 @@ _ARDUPILOT = RobotKind(
     },
     parameters={"thrust": ("GUID_OPTIONS", THRUST_IS_THRUST), "rates": ("GUID_OPTIONS", THRUST_IS_THRUST)},
     guided=GUIDED,
-    encode=setpoints.COPTER,
+    encode=target_messages.COPTER,
     tick=TICK_S,
     crash_range=0.2,
     discrete={

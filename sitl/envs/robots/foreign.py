@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.foreign.betaflight import configuration
@@ -101,7 +101,7 @@ class ForeignVehicles(Vehicles):
             if choice.kind == BETAFLIGHT:
                 lines, params = configuration.given(options.params)
             else:
-                params = files.given(options.params)
+                params = parm_files.given(options.params)
             plant = stand_alone(replace(scenario, params={**choice.for_physics(params), **wind}))
             if rebooted is None:
                 own = {**params, **wind} if choice.kind == ARDUPILOT else params

@@ -46,9 +46,10 @@ from ..mavlink.compiled import (
     send_all,
     show_all,
 )
+from ..mavlink.last_messages import PART
 from ..mavlink.preparation import set_bit, set_intervals, set_mode
 from ..mavlink.reports import note_report
-from ..mavlink.setpoints import (
+from ..mavlink.target_messages import (
     Encode,
     acceleration,
     override,
@@ -59,15 +60,14 @@ from ..mavlink.setpoints import (
     thrust,
     velocity,
 )
-from ..mavlink.setpoints import attitude as copter_attitude
-from ..mavlink.telemetry import PART
+from ..mavlink.target_messages import attitude as copter_attitude
 from ..options import EnvOptionError
 from .boots import draw
 from .in_process import InProcessVehicles, check_parameters
 from .moves import BOOT, Prepared
 from .robot import Floats, Pose
 from .starts import Start
-from .truth import true_reports, truth_writer
+from .true_state import true_reports, truth_writer
 from .vehicles import NOT_STARTED, EpisodeState, VehicleSetup
 
 ENCODINGS: dict[Encode, int] = {

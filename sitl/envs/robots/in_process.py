@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from sitl.autopilot.params.files import FileValues, ParameterError
+from sitl.autopilot.params.parm_files import FileValues, ParameterError
 from sitl.bridge.links import LinkAddressError, open_link
 from sitl.client.connection import InProcess
 from sitl.physics.engine import EngineError

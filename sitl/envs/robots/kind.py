@@ -16,7 +16,7 @@ from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
 from ..actions import Action, Continuous, Discrete, Setpoint
-from ..mavlink.setpoints import Encode
+from ..mavlink.target_messages import Encode
 from ..options import EnvOptionError
 from .robot import Floats, Volume
 

@@ -7,14 +7,14 @@ from sitl.autopilot.rover.modes.guided import GUIDED
 from sitl.autopilot.rover.modes.manual import MANUAL
 
 from ..actions import ATTITUDE, POSITION, RC_OVERRIDE, VELOCITY
-from ..mavlink import setpoints
+from ..mavlink import target_messages
 from .kind import FAR, RobotKind, pulses
 
 ROBOT = RobotKind(
     setpoints=(VELOCITY, RC_OVERRIDE, POSITION, ATTITUDE),
     modes={"rc": MANUAL, "velocity": GUIDED, "position": GUIDED, "attitude": GUIDED},
     guided=GUIDED,
-    encode=setpoints.ROVER,
+    encode=target_messages.ROVER,
     tick=0.02,
     crash_range=1.5,
     discrete={

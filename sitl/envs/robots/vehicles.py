@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, ClassVar
 
-from sitl.autopilot.params.files import Given
+from sitl.autopilot.params.parm_files import Given
 from sitl.bridge.dialect import MessageType
 from sitl.client.connection import Connection
 from sitl.core.geodesy import offset_ne
@@ -23,14 +23,14 @@ from sitl.vehicles.airframe import Value
 from sitl.vehicles.properties.property import Property
 from sitl.worlds import World
 
-from ..mavlink import px4, setpoints
+from ..mavlink import px4, target_messages
 from ..mavlink.guard import Guard, Watch
+from ..mavlink.last_messages import StepTelemetry
 from ..mavlink.preparation import INTERVAL_US, REBOOT, prepare
-from ..mavlink.telemetry import StepTelemetry
 from ..options import EnvOptionError
 from .kind import RobotKind
 from .robot import Floats, Pose
-from .truth import true_reports, true_states
+from .true_state import true_reports, true_states
 from .wind import PROPERTIES
 
 INPROCESS = "inprocess"
@@ -320,7 +320,7 @@ class Vehicles(ABC):
         take_off = self.options.take_off if kind.takes_off else 0.0
 
         def hold_sticks() -> None:
-            link.endpoint.send_payload(*setpoints.override(_AT_REST, inbox, ()))
+            link.endpoint.send_payload(*target_messages.override(_AT_REST, inbox, ()))
 
         if kind.prepares is not None:
             kind.prepares(link, take_off)

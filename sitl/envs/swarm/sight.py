@@ -15,11 +15,11 @@ from ...simulation import Simulation
 from ...swarm import Swarm
 from ...worlds import World
 from ...worlds.camera import DISC
-from ..mavlink.telemetry import PART
+from ..mavlink.last_messages import PART
 from ..options import EnvOptionError, unknown
 from ..past import Film
 from ..pictures import PICTURES, Picture
-from ..robots.truth import STATE, true_states
+from ..robots.true_state import STATE, true_states
 
 Floats = npt.NDArray[np.float64]
 Narrow = npt.NDArray[np.float32]

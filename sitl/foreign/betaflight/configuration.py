@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from ...autopilot.params.files import Given
+from ...autopilot.params.parm_files import Given
 from ...errors import OptionError
 from ...vehicle.sim_parameters import PREFIX
 from ...warp.held_clock import ProgramGone

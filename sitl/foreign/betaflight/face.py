@@ -12,14 +12,14 @@ from typing import Any
 
 from ...bridge.dialect import MessageType, message, message_by_id
 from ...bridge.frame import Splitter, encode_v2
-from ...bridge.services.setpoints import ATTITUDE_IGNORED
+from ...bridge.services.setpoint_messages import ATTITUDE_IGNORED
 from ...core.mavlink import ARM_FORCED, MavAutopilot, MavCmd, MavModeFlag, MavResult, MavSeverity, MavState, MavType
 from ...plants.local import LocalPlant
 from .airframe import throttle
 from .msp import Status
-from .parameters import SimParameters
-from .sticks import ACRO, MODES, Sticks
-from .telemetry import Telemetry
+from .receiver import ACRO, MODES, Sticks
+from .sim_parameters import SimParameters
+from .true_telemetry import Telemetry
 
 SYSTEM, COMPONENT = 1, 1
 ARM_US = 500_000

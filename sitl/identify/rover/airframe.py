@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from ... import vehicles
 from ...autopilot.rover.parameters import TABLE
 from ...vehicles import RoverAirframe
-from ...vehicles.properties.rover import STEERING_TURNING_CIRCLE
-from ..flight import FlightLog, IdentifyError
+from ...vehicles.properties.ground_vehicle import STEERING_TURNING_CIRCLE
+from ..log_streams import FlightLog, IdentifyError
 from ..shared import NOISES, Found, battery, kept
 from .model import BASES
 from .outputs import is_skid

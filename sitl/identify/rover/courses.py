@@ -18,7 +18,7 @@ from ...core.records import Records
 from ...physics.native.rover.prepare import prepare
 from ...physics.native.rover.state import Physics
 from ...physics.native.rover.step import STEERING_OUTPUT, THROTTLE_OUTPUT, move
-from ...vehicles.properties.rover import STEERING_SKID
+from ...vehicles.properties.ground_vehicle import STEERING_SKID
 
 Array = np.ndarray[Any, Any]
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...core.constants import GRAVITY
 from ..board import CAPACITY, resistance, vibration
 from ..estimate import NORMAL_95, Estimate, Sought
-from ..flight import FlightLog
+from ..log_streams import FlightLog
 from ..regression import GUSTS_S, least_squares
 from ..sensors import sensors
 from ..signals import within

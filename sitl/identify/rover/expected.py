@@ -7,7 +7,7 @@ import math
 
 from ...core.constants import GRAVITY
 from ...vehicles import RoverAirframe
-from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ...vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, STEERING_SKID
 
 
 def expected(airframe: RoverAirframe) -> dict[str, float]:

@@ -12,7 +12,7 @@ import numpy as np
 from ... import vehicles
 from ...core.constants import GRAVITY
 from ...vehicles import RoverAirframe
-from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
+from ...vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE
 from .courses import Courses, drive
 from .stretches import Stretches
 

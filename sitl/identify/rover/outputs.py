@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..flight import FlightLog
+from ..log_streams import FlightLog
 
 Array = np.ndarray[Any, Any]
 

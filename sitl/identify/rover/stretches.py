@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy import signal
 
-from ..flight import FlightLog
+from ..log_streams import FlightLog
 from ..signals import Span
 from .courses import STEP_S, Courses
 from .outputs import Output, is_skid, outputs

@@ -21,7 +21,7 @@ from ...autopilot.params.table import Values
 from ..kind import logs_of
 from . import bits, board, formats
 from .common import EVENT_MESSAGES
-from .events import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
+from .event_messages import EDGES, HEALTH, HOME, ORIGIN, RESOLVED, SILENCE_US, UNHEALTHY, EventEncoder
 from .samples import Samples
 from .schedule import Plan
 

@@ -13,7 +13,7 @@ from sitl.vehicle.kinds import DEFAULT, KINDS
 
 from ..files import as_flight, save, straightened
 from ..files.store import READ_TEXT
-from .options import add_file_options, load_all, say_notes
+from .mission_options import add_file_options, load_all, say_notes
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

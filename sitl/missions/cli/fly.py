@@ -26,7 +26,7 @@ from ..files import MissionFile, for_vehicle
 from ..files.document import kind_of_type
 from ..files.store import READ_TEXT
 from ..fly import LIMIT_S, Outcome, checked, fly
-from .options import add_file_options, load_all, say_notes
+from .mission_options import add_file_options, load_all, say_notes
 
 
 def add_parser(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -27,7 +27,7 @@ from sitl.run.pacing import Pacing, parse_speedup
 from sitl.simulation import Simulation
 
 from ..tlog_replay.extract import extract
-from ..tlog_replay.fly import LogFlight
+from ..tlog_replay.fly_script import LogFlight
 from ..tlog_replay.log import Log
 from ..tlog_replay.steps import Upload
 

@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     """Fly them; 0 when all are like golden."""
     from ..suite import cases as suite_cases
     from ..suite import run as table
-    from ..suite.fly import Result
+    from ..suite.fly_case import Result
     from ..suite.run import run as fly_all
 
     cases = suite_cases.find(options.folder)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from sitl.view import library
+from sitl.view import page_library
 from sitl.view.flights import of_track
 
 from .compare import Comparison
@@ -22,7 +22,7 @@ def write(comparison: Comparison, folder: Path) -> Path | None:
     Raises:
         SitlError: it cannot be written.
     """
-    if not library.is_installed():
+    if not page_library.is_installed():
         return None
     from sitl.view.flight_page import FlightPage
 

@@ -7,7 +7,7 @@ https://docs.qgroundcontrol.com/master/en/qgc-dev-guide/file_formats/plan.html
 """
 
 from .document import Complex, FenceCircle, FencePolygon, MissionFile, MissionFileError, RallyPoint
-from .flight import as_flight, for_vehicle
+from .flyable import as_flight, for_vehicle
 from .splines import straightened
 from .store import joined, load, save
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sitl import vehicles
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.core import code_in_files, documents
 from sitl.errors import OptionError
 from sitl.physics.engines import NATIVE
@@ -214,8 +214,8 @@ def _params(folder: Path, table: dict[str, Any]) -> dict[str, float]:
     if not (folder / value).resolve().is_relative_to(folder.resolve()):
         raise SuiteError(f"{folder / TOML}: params = {value!r} is not in the folder of the suite")
     try:
-        return files.load(folder / value)
-    except files.ParameterError as error:
+        return parm_files.load(folder / value)
+    except parm_files.ParameterError as error:
         raise SuiteError(f"{folder / TOML}: {error}") from None
 
 

@@ -22,7 +22,7 @@ from sitl.vehicle.kinds import KINDS
 from ..comparison.report import Case as JunitCase
 from ..comparison.report import junit_write as write_junit
 from .cases import Case, SuiteError
-from .fly import FAILED, Result, fly_case
+from .fly_case import FAILED, Result, fly_case
 
 BACKENDS = ("local", "ray")
 

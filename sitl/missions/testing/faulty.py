@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import Any
 
 from sitl.bridge.links import LinkFaults
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client.connection import Connection
 from sitl.errors import OptionError
 from sitl.simulation import Simulation

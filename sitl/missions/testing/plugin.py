@@ -145,7 +145,7 @@ def _marked(node: pytest.Item) -> dict[str, Any]:
 
 
 def _defaults(config: pytest.Config, folder: Path) -> Any:
-    from sitl.autopilot.params import files
+    from sitl.autopilot.params import parm_files
 
     from .setup import Defaults
 
@@ -153,7 +153,7 @@ def _defaults(config: pytest.Config, folder: Path) -> Any:
     if not re.fullmatch(r"(-?\d+)?", seed):
         raise pytest.UsageError(f"--sitl-seed {seed!r} is not a whole number")
     params = option(config, "params")
-    values = files.load(config.rootpath / params) if params else files.FileValues()
+    values = parm_files.load(config.rootpath / params) if params else parm_files.FileValues()
     physics, autopilot = option(config, "physics", "native"), option(config, "autopilot", "native")
     return Defaults(
         int(seed) if seed else None, physics, autopilot, values, (folder, config.invocation_params.dir, config.rootpath)

@@ -10,7 +10,7 @@ from inspect import signature
 from pathlib import Path
 
 from sitl import vehicles
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.client.endpoint import Inbox
 from sitl.core.compile import Progress
 from sitl.envs.mavlink.foreign import Foreign, launch
@@ -82,7 +82,7 @@ class Setup:
 
     def _parameters(self) -> dict[str, float]:
         values = dict(self.params)
-        return files.FileValues(values) if self.has_files else values
+        return parm_files.FileValues(values) if self.has_files else values
 
 
 def _core(kind: str) -> Core:
@@ -99,7 +99,7 @@ class Defaults:
     seed: int | None = None
     physics: str = NATIVE
     autopilot: str = OURS
-    params: files.FileValues = field(default_factory=files.FileValues)
+    params: parm_files.FileValues = field(default_factory=parm_files.FileValues)
     folders: tuple[Path, ...] = (Path(),)
     """Where files are looked for."""
 
@@ -112,7 +112,7 @@ def setup(
     home: Sequence[float] | None = None,
     seed: int | None = None,
     estimator: str = "ekf",
-    params: files.Given | None = None,
+    params: parm_files.Given | None = None,
     world: str | Path | World | None = None,
     start: StartPose | None = None,
     physics: str | None = None,
@@ -151,8 +151,8 @@ def setup(
         if home is None and file.home is not None:
             home = (*file.home, 0.0)
     if isinstance(params, str | Path):
-        params = files.load(_beside(params, defaults.folders))
-    params = files.given(params)
+        params = parm_files.load(_beside(params, defaults.folders))
+    params = parm_files.given(params)
     values = values | params
     if wind is not None:
         given = [float(x) for x in (wind if isinstance(wind, Sequence) else (wind,))]
@@ -170,11 +170,11 @@ def setup(
     values = defaults.params | values
     if values.sources and (autopilot or defaults.autopilot) == OURS:
         table = KINDS[vehicles.load(frame).kind].firmware.table
-        if not isinstance(params, files.FileValues):  # what the test itself says is not taken that lightly
+        if not isinstance(params, parm_files.FileValues):  # what the test itself says is not taken that lightly
             if strange := [name for name in params if name not in table]:
-                raise files.ParameterError(files.unknown(vehicles.load(frame).kind, strange, table))
-            files.check(table, params)
-        files.report(table, values)
+                raise parm_files.ParameterError(parm_files.unknown(vehicles.load(frame).kind, strange, table))
+            parm_files.check(table, params)
+        parm_files.report(table, values)
     location = tuple(float(x) for x in home) if home is not None else None
     if location is not None and len(location) != 4:
         raise OptionError(f"home {home!r} is not (latitude, longitude, altitude, heading)")

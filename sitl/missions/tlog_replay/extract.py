@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.autopilot.params.files import FileValues
+from sitl.autopilot.params.parm_files import FileValues
 from sitl.core.mavlink import MavCmd
 from sitl.scenario import Home
 from sitl.vehicle.kinds import KINDS

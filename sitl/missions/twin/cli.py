@@ -77,7 +77,7 @@ def _settings(texts: list[str]) -> dict[str, float]:
 def run(options: argparse.Namespace) -> int:
     """Fly the twin; 1 when a limit is not kept."""
     from . import limits, report, twin
-    from .flight import Change
+    from .log_flight import Change
 
     wanted = dict(limits.parse(text) for text in options.limit)
     faults = tuple(str(Failure.of(text)) for text in vehicle_faults(options))

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.bridge.services.setpoints import (
+from sitl.bridge.services.setpoint_messages import (
     ACCELERATION_IGNORED,
     POSITION_IGNORED,
     VELOCITY_IGNORED,

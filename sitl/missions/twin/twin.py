@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from sitl import vehicles
-from sitl.autopilot.params import files
+from sitl.autopilot.params import parm_files
 from sitl.core.algebra import euler_of
 from sitl.core.compile import Progress
 from sitl.core.geodesy import add_offset
@@ -26,13 +26,13 @@ from sitl.simulation import Core, Simulation
 from sitl.vehicle.kinds import KINDS
 from sitl.vehicles import Airframe
 
-from . import half_turns, inputs, legs, parameters, streams
+from . import half_turns, inputs, legs, streams, taken_parameters
 from .agreement import Agreement, Window, compare
-from .flight import LOG_BITMASK, Change, Segments, TwinFlight
 from .flight_log import FlightLog, TwinError
 from .half_turns import HalfTurn, heading
 from .inputs import Inputs
 from .judge import NOT_JUDGED, findings
+from .log_flight import LOG_BITMASK, Change, Segments, TwinFlight
 
 SEGMENT_S = 2.0
 """Length of an open segment."""
@@ -176,9 +176,9 @@ class _Twins:
         self.kind = KINDS[airframe.kind]
         table = self.kind.firmware.table
         if unknown := [name for name in change.params if name not in table]:
-            raise files.ParameterError(files.unknown(self.kind.name, unknown, table))
-        files.check(table, change.params, "--set")
-        self.taken = parameters.taken(log, table)
+            raise parm_files.ParameterError(parm_files.unknown(self.kind.name, unknown, table))
+        parm_files.check(table, change.params, "--set")
+        self.taken = taken_parameters.taken(log, table)
         self.taken.values.is_reported = True
         self.inputs: Inputs = inputs.of(log)
         self.wind = wind

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...core.constants import GRAVITY
-from ...vehicles.properties.copter import THRUST_MOMENTUM
+from ...vehicles.properties.multicopter import THRUST_MOMENTUM
 from ..native.prepare import decay
 from .aircraft import Contact, written
 from .formula import component, difference, function, greatest, if_less, least, magnitude, product, root, total

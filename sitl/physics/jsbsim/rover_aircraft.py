@@ -14,7 +14,7 @@ import math
 from typing import Any, NamedTuple
 
 from ...core.constants import GRAVITY
-from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ...vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, STEERING_SKID
 from .aircraft import Contact, location, written
 from .formula import difference, function, limited, product, total
 from .model import FOOT, POUND

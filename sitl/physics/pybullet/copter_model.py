@@ -53,7 +53,7 @@ def model(airframe: Any) -> CopterModel:
     """The model of an airframe.
 
     Args:
-        airframe: properties of a copter: the record ``physics.airframe`` (``sitl.vehicles.properties.copter``).
+        airframe: properties of a copter: the record ``physics.airframe`` (``sitl.vehicles.properties.multicopter``).
     """
     hubs = [
         (float(airframe.rotor_x[k]), -float(airframe.rotor_y[k]), -float(airframe.rotor_z[k]))

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.constants import GRAVITY
-from ...vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID
+from ...vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, STEERING_SKID
 from .client import Client
 from .wheels import ALONG_Y, Parts, meet, touch_in_one_point
 from .worlds import FLOOR_GROUP, SOLID_GROUP

@@ -18,7 +18,7 @@ from . import surroundings
 from .bearings import Bearings
 from .company import CompanyNodes
 from .contacts import Contacts
-from .plan import PlanNodes
+from .mission_scene import PlanNodes
 from .trail import Trail
 from .vehicle import Ghost, VehicleNodes
 

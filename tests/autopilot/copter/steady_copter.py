@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from sitl.autopilot import home
+from sitl.autopilot.copter.control.control_step import init as init_control
 from sitl.autopilot.copter.control.frames import load_frame
-from sitl.autopilot.copter.control.update import init as init_control
-from sitl.autopilot.copter.modes.update import init as init_modes
+from sitl.autopilot.copter.modes.decisions import init as init_modes
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.vehicle.copter import Copter
 

@@ -7,7 +7,7 @@ import pytest
 
 from sitl.autopilot.arming_checks import ARMED, ARMING_REFUSED, DISARMED, ArmingMethod
 from sitl.autopilot.copter import arming
-from sitl.autopilot.copter.modes.table import TITLES
+from sitl.autopilot.copter.modes.mode_list import TITLES
 from sitl.core.vectors import Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, wait
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.copter import failsafe
-from sitl.autopilot.copter.control import vibration
+from sitl.autopilot.copter.control import vibration_compensation
 from sitl.autopilot.failsafe_checks import FAILSAFE, GLITCH, TERRAIN, VIBRATION
 from sitl.autopilot.terrain.state import FAILSAFE as GROUND_MISSING
 from sitl.autopilot.terrain.state import RTL_BEGINS_ANEW, TERRAIN_DID
@@ -43,13 +43,13 @@ def test_vibration_is_watched_armed_and_when_enabled(flying, armed, enabled, wat
     ap = flying.autopilot
     ap.arming.armed, ap.params.FS.VIBE_ENABLE = armed, enabled
     seen: list[bool] = []
-    changes = [vibration.BEGINS, vibration.NOTHING, vibration.ENDS]
+    changes = [vibration_compensation.BEGINS, vibration_compensation.NOTHING, vibration_compensation.ENDS]
 
     def watch(state: Any, est: Any, is_watched: bool, time_us: int) -> int:
         seen.append(bool(is_watched))
         return changes[len(seen) - 1]
 
-    monkeypatch.setattr(vibration, "watch", watch)
+    monkeypatch.setattr(vibration_compensation, "watch", watch)
     for _ in changes:
         failsafe.watch_vibration(flying)
     assert seen == [watched] * 3

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sitl.autopilot.estimation import status, update
-from sitl.autopilot.estimation.events import (
+from sitl.autopilot.estimation.estimator_events import (
     EKF_INITIALISED,
     EKF_ORIGIN_SET,
     EKF_TILT_ALIGNED,

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.estimation import status
-from sitl.autopilot.estimation.events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES_GPS
+from sitl.autopilot.estimation.estimator_events import EKF_INITIALISED, EKF_STOPPED_GPS, EKF_USES_GPS
 from tests.autopilot.estimation import synthetic_flight as sf
 from tests.autopilot.estimation.synthetic_flight import TAKE_OFF
 

@@ -9,7 +9,7 @@ import pytest
 
 from sitl.autopilot.estimation import compass, lanes
 from sitl.autopilot.estimation.alignment import RUN, TILT
-from sitl.autopilot.estimation.events import EKF_LANE_SWITCHED
+from sitl.autopilot.estimation.estimator_events import EKF_LANE_SWITCHED
 from sitl.core.border import ACC_SILENT, GYRO_SILENT, IMUS_DIFFER
 from sitl.core.memory import words_of
 from sitl.core.vectors import Quat, Vec3

@@ -8,7 +8,7 @@ import pytest
 from sitl.autopilot.fence import arming
 from sitl.autopilot.fence.checks import margin_of
 from sitl.autopilot.fence.state import AREAS, CIRCLE, MAX_ALT, MIN_ALT, FenceState
-from sitl.autopilot.params.fence import Fence
+from sitl.autopilot.params.fence_parameters import Fence
 from sitl.autopilot.state import Estimate, HomeState
 from sitl.core.vectors import Vec3
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.navigation.leg import LegError, Limits, Profile, axis_limits, plan, write
-from sitl.autopilot.navigation.profile import clear, evaluate, finished, remaining, step
+from sitl.autopilot.navigation.leg_motion import clear, evaluate, finished, remaining, step
 from sitl.autopilot.navigation.state import SEGMENTS, Leg
 from sitl.core.algebra import ZERO
 from sitl.core.vectors import Vec3

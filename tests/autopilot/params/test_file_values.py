@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from sitl.autopilot.params import files
-from sitl.autopilot.params.files import FileValues, ParameterError, ParameterWarning
+from sitl.autopilot.params import parm_files
 from sitl.autopilot.params.parameter import FLOAT, stored
+from sitl.autopilot.params.parm_files import FileValues, ParameterError, ParameterWarning
 from sitl.autopilot.params.renamed import RENAMED, here
 from sitl.autopilot.params.table import Table, Values
 from sitl.scenario import Scenario
@@ -38,9 +38,9 @@ def new(table: Table = COPTER) -> Values:
 
 def test_values_out_of_range_are_kept_and_the_nearest_are_used() -> None:
     values = new()
-    given = files.parse("".join(f"{name} {value}\n" for name, (value, _) in REAL.items()) + "RTL_ALT 2000\n")
+    given = parm_files.parse("".join(f"{name} {value}\n" for name, (value, _) in REAL.items()) + "RTL_ALT 2000\n")
     with pytest.warns(ParameterWarning) as told:
-        assert files.apply(values, given) == []
+        assert parm_files.apply(values, given) == []
     for name, (value, used) in REAL.items():
         assert values[name] == stored(COPTER[name], value)
         assert not COPTER[name].has_effect or values._record[name] == stored(COPTER[name], used)
@@ -53,14 +53,14 @@ def test_values_out_of_range_are_kept_and_the_nearest_are_used() -> None:
 def test_bits_that_mean_nothing_here_change_none_of_the_others() -> None:
     """The nearest in range would be other bits: none at all for ARMING_CHECK -10, which has all but two."""
     values = new()
-    files.apply(values, files.parse("ARMING_CHECK -10\nFS_OPTIONS 256\nLOG_BITMASK -1\nFLIGHT_OPTIONS 16\n"))
+    parm_files.apply(values, parm_files.parse("ARMING_CHECK -10\nFS_OPTIONS 256\nLOG_BITMASK -1\nFLIGHT_OPTIONS 16\n"))
     record = values._record
     assert (record.ARMING.CHECK, record.FS.OPTIONS, record.LOG.BITMASK, record.FLIGHT_OPTIONS) == (-10, 256, -1, 16)
 
 
 def test_the_same_values_are_refused_when_a_program_gives_them() -> None:
     with pytest.raises(ParameterError, match=r"ACRO_Y_RATE: 600 is outside 1 \.\. 360 deg/s; ATC_THR_MIX_MAX"):
-        files.apply(new(), {"ACRO_Y_RATE": 600.0, "ATC_THR_MIX_MAX": 2.0})
+        parm_files.apply(new(), {"ACRO_Y_RATE": 600.0, "ATC_THR_MIX_MAX": 2.0})
 
 
 @pytest.fixture(params=KINDS)
@@ -72,11 +72,11 @@ def test_every_bound_of_every_parameter_is_taken_from_a_file_and_from_a_program(
     """Bounds are decimal numbers, and many have no float32 that is the same: 0.1 is 0.10000000149 to the firmware."""
     for bound in ("low", "high", "default"):
         wanted = {p.name: getattr(p, bound) for p in table if math.isfinite(getattr(p, bound))}
-        from_file = files.parse("".join(f"{name} {value!r}\n" for name, value in wanted.items()))
+        from_file = parm_files.parse("".join(f"{name} {value!r}\n" for name, value in wanted.items()))
         assert from_file.keys() == wanted.keys() - {"FORMAT_VERSION", "MIS_TOTAL", "FENCE_TOTAL", "RALLY_TOTAL"}
-        assert not [text for text in files.notes(table, from_file) if "out of range" in text]
+        assert not [text for text in parm_files.notes(table, from_file) if "out of range" in text]
         values = new(table)
-        assert files.apply(values, wanted) == []
+        assert parm_files.apply(values, wanted) == []
         for name, value in wanted.items():
             p = table[name]
             kept = stored(p, value)
@@ -102,7 +102,7 @@ def test_integers_are_stored_as_ardupilot_stores_them(value: float, kept: float)
 def test_names_of_other_versions_are_told_with_the_value_that_means_the_same() -> None:
     """If it would change something; rates of telemetry come last."""
     text = "SR0_POSITION 4\nSYSID_THISMAV 3\nWP_SPD 5\nGPS_TYPE 1\nPSC_NE_VEL_IMAX 5\nPSC_D_ACC_P 0.03\nQ_ENABLE 1\n"
-    (said,) = files.notes(COPTER, files.parse(text + "RTL_ALT 2000\n"))
+    (said,) = parm_files.notes(COPTER, parm_files.parse(text + "RTL_ALT 2000\n"))
     assert said == (
         "7 parameters of the files are not in this firmware: SR0_POSITION, SYSID_THISMAV, WP_SPD, GPS_TYPE, "
         "PSC_NE_VEL_IMAX, PSC_D_ACC_P, ...; not set, but the same here: MAV_SYSID 3 for SYSID_THISMAV 3, "
@@ -119,35 +119,35 @@ def test_every_name_of_another_version_has_one_here() -> None:
 
 
 def test_a_name_that_is_nearly_one_gets_a_suggestion() -> None:
-    (said,) = files.notes(COPTER, files.parse("WPNAV_SPED 500\nRTL_ALT 2000\n"))
+    (said,) = parm_files.notes(COPTER, parm_files.parse("WPNAV_SPED 500\nRTL_ALT 2000\n"))
     assert said == "1 parameter of the files is not in this firmware: WPNAV_SPED; did you mean 'WPNAV_SPEED'?"
-    (said,) = files.notes(COPTER, files.parse("ACRO_YAW_P 4\nRTL_ALT 2000\n"))
+    (said,) = parm_files.notes(COPTER, parm_files.parse("ACRO_YAW_P 4\nRTL_ALT 2000\n"))
     assert said.endswith("ACRO_YAW_P; not set, but the same here: ACRO_Y_RATE 180 for ACRO_YAW_P 4")
-    (said,) = files.notes(COPTER, files.parse("CRUISE_SPEED 2\nRTL_ALT 2000\n"))
+    (said,) = parm_files.notes(COPTER, parm_files.parse("CRUISE_SPEED 2\nRTL_ALT 2000\n"))
     assert said.endswith("CRUISE_SPEED"), "another parameter's name is no help"
 
 
 def test_a_file_of_which_nothing_is_in_the_firmware_is_named() -> None:
-    said = files.notes(COPTER, files.parse("Q_ENABLE 1\nTECS_CLMB_MAX 5\n", "plane.param"))
+    said = parm_files.notes(COPTER, parm_files.parse("Q_ENABLE 1\nTECS_CLMB_MAX 5\n", "plane.param"))
     assert said[0] == "plane.param: nothing was set: none of its parameters is in this firmware"
 
 
 def test_read_only_is_told_and_reaches_an_ardupilot() -> None:
-    given = files.parse("RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n")
-    assert files.notes(COPTER, given) == ["1 parameter of the files is @READONLY, and can be set here: RTL_ALT"]
-    assert files.text_of(given) == "RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n"
+    given = parm_files.parse("RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n")
+    assert parm_files.notes(COPTER, given) == ["1 parameter of the files is @READONLY, and can be set here: RTL_ALT"]
+    assert parm_files.text_of(given) == "RTL_ALT 2000 @READONLY\nATC_RAT_RLL_P 0.1351234\n"
 
 
 def test_several_files_stand_over_each_other(tmp_path: Path) -> None:
     for name, text in (("a", "RTL_ALT 1\nLAND_SPEED 40 @READONLY\n"), ("b", "RTL_ALT 2\n")):
         (tmp_path / name).write_text(text)
-    both = files.load_all([tmp_path / "a", tmp_path / "b"])
+    both = parm_files.load_all([tmp_path / "a", tmp_path / "b"])
     assert both == {"RTL_ALT": 2.0, "LAND_SPEED": 40.0} and both.read_only == {"LAND_SPEED"}
     assert list(both.sources) == [str(tmp_path / "a"), str(tmp_path / "b")]
 
 
 def test_merged_with_other_values_they_stay_values_of_files() -> None:
-    given = files.parse("ACRO_Y_RATE 600\nRTL_ALT 1\n")
+    given = parm_files.parse("ACRO_Y_RATE 600\nRTL_ALT 1\n")
     over, under = given | {"RTL_ALT": 2.0}, {"RTL_ALT": 3.0, "LAND_SPEED": 40.0} | given
     assert isinstance(over, FileValues) and isinstance(under, FileValues)
     assert over["RTL_ALT"] == 2.0 and under == {"RTL_ALT": 1.0, "ACRO_Y_RATE": 600.0, "LAND_SPEED": 40.0}
@@ -156,12 +156,12 @@ def test_merged_with_other_values_they_stay_values_of_files() -> None:
 
 
 def test_the_user_is_told_once() -> None:
-    given = files.parse("ACRO_Y_RATE 600\n")
-    copies = [files.given(given) for _ in range(3)]
+    given = parm_files.parse("ACRO_Y_RATE 600\n")
+    copies = [parm_files.given(given) for _ in range(3)]
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         for copy in copies:
-            files.apply(new(), copy)
+            parm_files.apply(new(), copy)
     assert len(told) == 1
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.parameters import TABLE as COPTER
-from sitl.autopilot.params import docs, files, parameters
+from sitl.autopilot.params import docs, firmware_parameters, parm_files
 from sitl.autopilot.params.parameter import INT8, ParameterGroup, group, numbered, param, rows, stored
 from sitl.autopilot.params.table import Table, Values
 from sitl.autopilot.rover.parameters import TABLE as ROVER
@@ -39,7 +39,7 @@ class Gps(ParameterGroup):
     DELAY_MS: float = param(0, 0, 350, "ms", "age of a fix")
 
 
-class Twice(parameters.Parameters):
+class Twice(firmware_parameters.Parameters):
     GPS1: Gps
 
 
@@ -47,13 +47,13 @@ class Wrong(ParameterGroup):
     RATE: Gains = group("x", Q=1.0)
 
 
-class Toy(parameters.Parameters):
+class Toy(firmware_parameters.Parameters):
     """A firmware with a winch."""
 
     WINCH: Winch
     MODE: Floats = param(5, 0, 9, "", "Mode at position {n}", INT8, count=2)
     CH: Records[Channel] = numbered(Channel, 2, MIN=(1000, 1200))
-    SIM: parameters.Simulated
+    SIM: firmware_parameters.Simulated
 
 
 @pytest.mark.parametrize("table", [COPTER, ROVER, Table(Toy)])
@@ -125,7 +125,7 @@ def everything(values: Values) -> dict[str, float]:
 
 def test_reads_every_separator_and_comments() -> None:
     text = "# a file\nWPNAV_SPEED 500\nRTL_ALT,2000\nangle_max\t3000  # cdeg\n\n"
-    assert files.parse(text) == {"WPNAV_SPEED": 500.0, "RTL_ALT": 2000.0, "ANGLE_MAX": 3000.0}
+    assert parm_files.parse(text) == {"WPNAV_SPEED": 500.0, "RTL_ALT": 2000.0, "ANGLE_MAX": 3000.0}
 
 
 @pytest.mark.parametrize(
@@ -143,35 +143,35 @@ def test_reads_every_separator_and_comments() -> None:
     ],
 )
 def test_a_bad_line_is_named(text: str, says: str) -> None:
-    with pytest.raises(files.ParameterError, match=says):
-        files.parse(text, "x.parm")
+    with pytest.raises(parm_files.ParameterError, match=says):
+        parm_files.parse(text, "x.parm")
 
 
 def test_a_file_that_is_not_there_is_named(tmp_path) -> None:
-    with pytest.raises(files.ParameterError, match=r"none\.parm"):
-        files.load(tmp_path / "none.parm")
+    with pytest.raises(parm_files.ParameterError, match=r"none\.parm"):
+        parm_files.load(tmp_path / "none.parm")
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e9])
 def test_a_refused_value_leaves_everything_as_it_was(params, value: float) -> None:
     before = everything(params)
-    with pytest.raises(files.ParameterError, match="ANGLE_MAX"):
-        files.apply(params, {"WPNAV_SPEED": 300.0, "FRSKY_OPTIONS": 1.0, "ANGLE_MAX": value})
+    with pytest.raises(parm_files.ParameterError, match="ANGLE_MAX"):
+        parm_files.apply(params, {"WPNAV_SPEED": 300.0, "FRSKY_OPTIONS": 1.0, "ANGLE_MAX": value})
     assert everything(params) == before
 
 
 def test_unknown_names_are_returned_and_the_rest_is_set(params) -> None:
-    assert files.apply(params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
+    assert parm_files.apply(params, {"WPNAV_SPEED": 300.0, "NO_SUCH": 1.0}) == ["NO_SUCH"]
     assert params["WPNAV_SPEED"] == 300.0
 
 
 def test_saved_and_loaded_is_the_same_bits(params, tmp_path) -> None:
     params.update({"ATC_RAT_RLL_P": 0.1234567, "FRSKY_OPTIONS": 7.9, "BATT3_ARM_VOLT": 11.1})
-    files.save(params, tmp_path / "all.parm")
+    parm_files.save(params, tmp_path / "all.parm")
     again = Values(TABLE, TABLE.record())
     TABLE.set_defaults(again._record)
-    with pytest.warns(files.ParameterWarning, match="parameters of the files have no effect here"):
-        files.apply(again, files.load(tmp_path / "all.parm"))
+    with pytest.warns(parm_files.ParameterWarning, match="parameters of the files have no effect here"):
+        parm_files.apply(again, parm_files.load(tmp_path / "all.parm"))
     assert everything(again) == everything(params)
     assert again["FRSKY_OPTIONS"] == 7.0 and "BATT3_ARM_VOLT" not in {p.name for p in params.listed()}
 
@@ -179,8 +179,8 @@ def test_saved_and_loaded_is_the_same_bits(params, tmp_path) -> None:
 @given(st.text(max_size=200))
 def test_any_text_is_read_or_refused_by_name(text: str) -> None:
     try:
-        values = files.parse(text, "any")
-    except files.ParameterError as error:
+        values = parm_files.parse(text, "any")
+    except parm_files.ParameterError as error:
         assert str(error).startswith("any, line ")
     else:
         assert all(isinstance(v, float) for v in values.values())
@@ -219,7 +219,7 @@ OTHER_DEFAULT = {
 def test_every_name_of_ardupilot_is_known_with_its_type_and_default(name: str, known: int, listed: int) -> None:
     """As a real ArduPilot 4.7-dev tells them; ``listed`` is what it lists after boot, without files of parameters."""
     table = KINDS[name].firmware.table
-    with (Path(parameters.__file__).parents[1] / name / "parameters" / "ardupilot.csv").open() as file:
+    with (Path(firmware_parameters.__file__).parents[1] / name / "parameters" / "ardupilot.csv").open() as file:
         theirs = {row["name"]: row for row in csv.DictReader(file)}
     assert len(theirs) > known and list(theirs) == list(table.names())[: len(theirs)]
     for p in table.with_effect:

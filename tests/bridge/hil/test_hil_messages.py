@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.bridge.frame import Splitter
-from sitl.bridge.hil import controls, measurements, ranging, sensor, sticks, truth
+from sitl.bridge.hil import controls, measurements, ranging, rc_inputs, sensor, truth
 from sitl.bridge.hil.measurements import Inbox, Measurements
 from sitl.bridge.hil.protocol import RefusedError
 from sitl.core.record_reader import RecordReader
@@ -243,11 +243,11 @@ def test_pressure_altitude_of_the_standard_atmosphere() -> None:
 
 def test_sticks() -> None:
     other = Vehicle()
-    taker = sticks.SticksReader(other.v)
-    taker.write(taker.read(sticks.sticks_payload(5000, (1500, 1100, 1900))))
+    taker = rc_inputs.SticksReader(other.v)
+    taker.write(taker.read(rc_inputs.sticks_payload(5000, (1500, 1100, 1900))))
     assert other.v.sensors.rc_channels.tolist() == [1500, 1100, 1900] + [0] * 13
     assert (other.v.sensors.rc_count, other.v.sensors.rc_time_us) == (1, 5000)
     with pytest.raises(RefusedError, match="chan2_raw = 3000"):
-        taker.read(sticks.sticks_payload(5000, (1500, 3000)))
-    kind, payload = sticks.frame_for(True, 5000, (1500, 1100))
+        taker.read(rc_inputs.sticks_payload(5000, (1500, 3000)))
+    kind, payload = rc_inputs.frame_for(True, 5000, (1500, 1100))
     assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100

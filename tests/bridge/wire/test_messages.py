@@ -6,7 +6,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Iterator
 
-from sitl.bridge import profile
+from sitl.bridge import firmware_profile
 from sitl.bridge.wire.message import Message
 
 
@@ -18,10 +18,10 @@ def classes(base: type[Message]) -> Iterator[type[Message]]:
 
 def test_each_message_is_declared_once() -> None:
     for kind in ("copter", "rover"):
-        profile.load(kind)
+        firmware_profile.load(kind)
     for module in ("services", "telemetry"):
         importlib.import_module(f"sitl.bridge.{module}")
-    for module in ("compiled", "reports", "telemetry"):
+    for module in ("compiled", "reports", "last_messages"):
         importlib.import_module(f"sitl.envs.mavlink.{module}")
     declared: dict[str, list[str]] = {}
     for found in classes(Message):

@@ -51,8 +51,8 @@ def test_nothing_imports_a_compiler_before_something_is_compiled() -> None:
 
 def test_what_else_is_loaded_does_not_matter() -> None:
     for name in (
-        "sitl.autopilot.copter.modes.update:autopilot.copter.modes.update.update",
-        "sitl.envs.robots.truth:envs.robots.truth.write_truth",
+        "sitl.autopilot.copter.modes.decisions:autopilot.copter.modes.decisions.update",
+        "sitl.envs.robots.true_state:envs.robots.true_state.write_truth",
     ):
         alone = said(ASK, name)
         beside = said(ASK, name, "sitl.vehicle.rover", "sitl.bridge.rover.core", "sitl.vehicle.copter", seed="1")

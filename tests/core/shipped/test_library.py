@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from sitl.core.shipped import linker, targets
+from sitl.core.shipped import linker, target_machines
 from sitl.errors import MissingExtra
 
 LAWS = """
@@ -78,8 +78,8 @@ BUILD = """
 import sys
 from pathlib import Path
 import toy
-from sitl.core.shipped import build, targets
-chosen = [t for t in targets.TARGETS if t.name in sys.argv[2].split(",")]
+from sitl.core.shipped import build, target_machines
+chosen = [t for t in target_machines.TARGETS if t.name in sys.argv[2].split(",")]
 build.build(build.pieces({"toy.Pair": [toy.entry]}, ["toy"]), Path(sys.argv[1]), chosen)
 """
 
@@ -111,14 +111,14 @@ print(json.dumps({
 """  # noqa: E501
 
 
-def _linker_of(target: targets.Target) -> bool:
+def _linker_of(target: target_machines.Target) -> bool:
     try:
         return bool(linker.command(target))
     except MissingExtra:
         return False
 
 
-HERE = targets.usable()[-1:]
+HERE = target_machines.usable()[-1:]
 pytestmark = pytest.mark.skipif(not HERE or not _linker_of(HERE[0]), reason="no linker, or no target like this machine")
 
 
@@ -230,7 +230,7 @@ MACHINES = {"x86_64": 62, "x86_64_v3": 62, "aarch64": 183}
 
 
 def test_the_same_sources_give_the_same_bytes_and_code_for_other_machines(toy: Toy) -> None:
-    chosen = [target for target in targets.TARGETS if _linker_of(target)]
+    chosen = [target for target in target_machines.TARGETS if _linker_of(target)]
     folder = toy.ship("elsewhere", ",".join(target.name for target in chosen))
     for target in chosen:
         head = (folder / target.file).read_bytes()[:20]

@@ -10,9 +10,9 @@ import pytest
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter, encode_v2
+from sitl.foreign.betaflight.betaflight_session import starter
 from sitl.foreign.betaflight.host import BetaflightHost
 from sitl.foreign.betaflight.program import installed
-from sitl.foreign.betaflight.session import starter
 from sitl.plants.local import stand_alone
 from sitl.warp.build import CannotBuild, lockstep_library
 

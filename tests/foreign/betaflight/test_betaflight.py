@@ -11,10 +11,10 @@ import socket
 import pytest
 
 from sitl.errors import OptionError
+from sitl.foreign.betaflight.betaflight_session import starter
 from sitl.foreign.betaflight.configuration import CommandLine
 from sitl.foreign.betaflight.program import Program
-from sitl.foreign.betaflight.session import starter
-from sitl.foreign.betaflight.sticks import MODES
+from sitl.foreign.betaflight.receiver import MODES
 from sitl.foreign.process import AutopilotEndedError, free_tcp_run
 
 ARM, SET_MODE, DENIED = 400, 176, 2

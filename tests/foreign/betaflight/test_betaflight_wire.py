@@ -9,7 +9,7 @@ import pytest
 
 from sitl.foreign.betaflight import msp, wire
 from sitl.foreign.betaflight.configuration import lines, settings
-from sitl.foreign.betaflight.sticks import CENTRE, LOW, MODES, Sticks, deflection
+from sitl.foreign.betaflight.receiver import CENTRE, LOW, MODES, Sticks, deflection
 
 
 def test_motion_is_eighteen_doubles_with_east_before_north_and_longitude_before_latitude():

@@ -11,7 +11,7 @@ from sitl import Simulation, cli, vehicles
 from sitl.agents.rehearsal.airframe_plan import airframe_plan
 from sitl.client import Client
 from sitl.identify import IdentifyError, identify
-from sitl.identify.plan import rover_items
+from sitl.identify.flight_plan import rover_items
 from sitl.identify.rover.expected import expected
 from sitl.logs.dataflash.log import attach
 from sitl.missions import files

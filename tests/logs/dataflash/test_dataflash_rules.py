@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from pymavlink import DFReader
 
-from sitl.autopilot.estimation.events import EKF_STOPPED_GPS
+from sitl.autopilot.estimation.estimator_events import EKF_STOPPED_GPS
 from sitl.autopilot.events import emit
 from sitl.autopilot.terrain.ground import TERRAIN_LEFT
 from sitl.core.mavlink import MavCmd

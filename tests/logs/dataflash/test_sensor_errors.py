@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sitl import Simulation
-from sitl.bridge.services.parameters import ParameterService
+from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.run import runner
 from sitl.simulation import Core
 from tests.logs.dataflash.conftest import read_log

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from sitl.autopilot.params.files import ParameterWarning
+from sitl.autopilot.params.parm_files import ParameterWarning
 from sitl.cli import main
 from sitl.errors import MissingExtra
 from sitl.missions import library
 from sitl.missions.comparison.tolerance import ToleranceError
 from sitl.missions.suite.cases import SuiteError, find
-from sitl.missions.suite.fly import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN, fly_case
+from sitl.missions.suite.fly_case import DIFFERS, FAILED, KEPT, NO_GOLDEN, OK, REPLACED, WRITTEN, fly_case
 from sitl.missions.suite.run import run
 from sitl.simulation import Simulation
 from tests.recording.older import without_bits

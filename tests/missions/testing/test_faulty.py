@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from sitl.bridge.links import LinkFaults
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.errors import OptionError
 from sitl.missions.testing.factory import VehicleFactory
 

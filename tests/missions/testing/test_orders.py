@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from sitl.bridge.links import LinkFaults
-from sitl.bridge.services.faults import FaultService
+from sitl.bridge.services.failure_injection import FaultService
 from sitl.client.waits import turn
 from sitl.errors import OptionError
 from sitl.missions.library import entries

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sitl.logs import flight
+from sitl.logs import tlog_flight
 from sitl.logs.tlog import LogError
 from sitl.missions.cli import replay
 from sitl.missions.tlog_replay.extract import extract
@@ -121,7 +121,7 @@ def typed(text: str) -> int:
 def test_the_mission_is_flown_again(flight_log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert typed(f"replay {flight_log} --log-dir {tmp_path} --seed 9") == 0
     assert "otherwise" not in capsys.readouterr().out
-    then, now = flight.read(flight_log), flight.read(tmp_path / "flight-replay.tlog")
+    then, now = tlog_flight.read(flight_log), tlog_flight.read(tmp_path / "flight-replay.tlog")
     assert [seq for _, seq in now.reached] == [seq for _, seq in then.reached] != []
     paths = []
     for flown in (then, now):

@@ -12,7 +12,7 @@ import pytest
 from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.errors import OptionError
 from sitl.logs.tlog import LogError
-from sitl.missions.twin import inputs, parameters, streams, twin
+from sitl.missions.twin import inputs, streams, taken_parameters, twin
 from sitl.missions.twin.flight_log import FlightLog, TwinError
 from tests.logs.log_files import V32, binary, old_flight, telemetry, without_messages
 from tests.missions.twin.conftest import FORMATS, Log, cut
@@ -100,7 +100,7 @@ def test_parameters_that_say_how_it_is_flown_are_taken_over(written: Log) -> Non
         ("PARM", 1_000_000, b"ATC_ANGLE_MAX", 35.0, 30.0), ("PARM", 24_000_000, b"RTL_ALT", 1800.0, 1500.0),
         ("PARM", 25_000_000, b"WPNAV_SPEED", 800.0, 500.0), ("PARM", 1_000_000, b"ATC_RAT_RLL_P", 0.2, 0.135),
     )  # fmt: skip
-    found = parameters.taken(FlightLog(path), FIRMWARE.table)
+    found = taken_parameters.taken(FlightLog(path), FIRMWARE.table)
     assert found.values["ATC_RAT_RLL_P"] == pytest.approx(0.2) and found.values["SIM_WIND_SPD"] == 6.0
     assert found.values["ANGLE_MAX"] == 3500.0  # under its name of today
     assert not {"COMPASS_OFS_X", "SIM_ACC1_BIAS_X", "SERVO1_FUNCTION"} & set(found.values)
@@ -151,7 +151,7 @@ def test_parameters_of_arducopter_3_are_taken_under_their_names_of_today(written
     """The rates that are asked for were not filtered then; pulses of motors are the airframe's."""
     rows = (("MOT_PWM_MIN", 0.0), ("MOT_PWM_MAX", 0.0), ("ATC_RAT_RLL_FILT", 10.0), ("POS_Z_P", 1.5))
     path = written(*(("PARM", 1_000_000, name.encode(), value, value) for name, value in rows))
-    values = parameters.taken(FlightLog(path), FIRMWARE.table).values
+    values = taken_parameters.taken(FlightLog(path), FIRMWARE.table).values
     assert not {"MOT_PWM_MIN", "MOT_PWM_MAX"} & set(values)
     assert (values["ATC_RAT_RLL_FLTD"], values["ATC_RAT_RLL_FLTT"], values["PSC_POSZ_P"]) == (10.0, 0.0, 1.5)
 

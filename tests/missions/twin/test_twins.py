@@ -15,8 +15,8 @@ from sitl.cli import main
 from sitl.errors import OptionError
 from sitl.missions.testing import assert_twin
 from sitl.missions.twin import limits, report, twin
-from sitl.missions.twin.flight import Change
 from sitl.missions.twin.flight_log import FlightLog
+from sitl.missions.twin.log_flight import Change
 from sitl.missions.twin.twin import Twin
 from sitl.simulation import Core
 from tests.missions.twin.conftest import FRAME, SEED, cut

@@ -18,7 +18,7 @@ from sitl.physics.jsbsim.model import FOOT, POUND, POUND_FOOT, SLUG_BY_FOOT3
 from sitl.physics.native import atmosphere
 from sitl.physics.native.atmosphere import density
 from sitl.physics.native.copter.wrench import act
-from sitl.vehicles.properties.copter import THRUST_MOMENTUM
+from sitl.vehicles.properties.multicopter import THRUST_MOMENTUM
 from tests.physics.jsbsim.jsbsim_bench import Bench
 
 SEEDS = st.integers(0, 2**32 - 1)

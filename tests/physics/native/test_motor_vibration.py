@@ -15,7 +15,7 @@ from sitl.core.vectors import Vec3
 from sitl.physics.native.copter import vibration
 from sitl.simulation import Simulation
 from sitl.vehicle.copter import apply_sim_parameters
-from sitl.vehicles.properties.copter import THRUST_MOMENTUM
+from sitl.vehicles.properties.multicopter import THRUST_MOMENTUM
 
 TICKS = 400
 

@@ -18,9 +18,9 @@ from sitl import vehicles, worlds
 from sitl.core.records import first_difference
 from sitl.physics.engine import EngineError, EngineVehicle, Laws
 from sitl.physics.native.rover.init import init
-from sitl.physics.pybullet.rover import BulletRover
 from sitl.physics.pybullet.rover_model import layout
 from sitl.physics.pybullet.tyres import CREEP, scrub
+from sitl.physics.pybullet.wheeled_rover import BulletRover
 from sitl.vehicle.core_entry import bind_unit
 from sitl.vehicle.rover import ROVER
 from sitl.vehicle.rover import Rover as RoverRecord

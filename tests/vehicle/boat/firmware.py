@@ -8,10 +8,10 @@ from typing import Any
 
 from sitl.autopilot import state
 from sitl.autopilot.firmware import Firmware
-from sitl.autopilot.mission.commands import Commands
+from sitl.autopilot.mission.item_runners import Commands
 from sitl.autopilot.modes import Mode
 from sitl.autopilot.navigation.planner import Planner
-from sitl.autopilot.params import parameters
+from sitl.autopilot.params import firmware_parameters
 from sitl.autopilot.params.parameter import param
 from sitl.autopilot.params.table import Table
 from sitl.core.kernels import law
@@ -19,7 +19,7 @@ from sitl.core.kernels import law
 AHEAD = 0
 
 
-class Parameters(parameters.Parameters):
+class Parameters(firmware_parameters.Parameters):
     """The boat's parameters: those of all firmwares, and its own."""
 
     BOAT_THROTTLE: float = param(0.5, 0.0, 1.0, "", "Throttle while it is armed")

@@ -9,10 +9,10 @@ from typing import Any
 from sitl.bridge.autopilot_api import Vector
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.core_link import CoreUnits
-from sitl.bridge.profile import Profile
+from sitl.bridge.firmware_profile import Profile
 from sitl.bridge.services import command_table
 from sitl.bridge.services.rc import rc_channels_override
-from sitl.bridge.services.setpoints import SetpointService
+from sitl.bridge.services.setpoint_messages import SetpointService
 from sitl.bridge.telemetry.builder import compiled
 from sitl.bridge.telemetry.heartbeat import Heartbeat, fill_heartbeat
 from sitl.bridge.telemetry.shell import CAPABILITIES

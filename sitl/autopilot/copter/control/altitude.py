@@ -30,7 +30,7 @@ from .altitude_start import ACCZ_UNIT, init_d, is_active_d
 from .motors import hover_throttle
 from .state import DT, AltitudeState, Control
 from .throttle_mix import set_throttle_out
-from .vibration import throttle_without_acceleration
+from .vibration_compensation import throttle_without_acceleration
 
 _ACCZ_IMAX_UNIT = 0.001
 _THROTTLE_HZ = 2.0  # low-pass of the throttle [Hz]

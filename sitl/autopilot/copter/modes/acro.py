@@ -22,7 +22,7 @@ from ..control.attitude_target import accel_max
 from ..control.motors import hover_throttle
 from ..control.state import DT
 from ..parameters import Parameters
-from ..parameters.flight import Acro
+from ..parameters.flight_modes import Acro
 from ..state import Vehicle
 from . import ground
 from .mode import CopterMode

@@ -23,7 +23,7 @@ from ..control.state import AttitudeState, Control
 from ..navigation import circle, command, waypoint
 from ..navigation.state import CopterNav
 from ..parameters import Parameters
-from ..parameters.flight import Waypoints
+from ..parameters.flight_modes import Waypoints
 from ..state import Vehicle
 from . import auto_yaw, descent, ground, guided, land, loiter_to_alt, payload_place, precision_land, rtl, takeoff
 from .mode import CopterMode

@@ -20,7 +20,7 @@ from ..control.attitude import Heading
 from ..control.state import DT, AttitudeState, Control, PositionState
 from ..parameters import Parameters
 from ..parameters.control import Attitude
-from ..parameters.flight import Waypoints
+from ..parameters.flight_modes import Waypoints
 from .state import AutoYaw, Modes
 
 HOLD = 0  # heading as it is

@@ -15,7 +15,7 @@ from .. import pilot
 from ..control import altitude, attitude, position, position_start
 from ..control.state import DT, AltitudeState, Control
 from ..parameters import Parameters
-from ..parameters.flight import Land
+from ..parameters.flight_modes import Land
 from . import auto_yaw, ground
 from .state import LandState, Modes, PilotState
 

@@ -23,7 +23,7 @@ from ..control.attitude import Lean
 from ..control.state import DT
 from ..control.throttle_mix import lean_limit
 from ..parameters import Parameters
-from ..parameters.flight import FlowHold
+from ..parameters.flight_modes import FlowHold
 from ..state import Vehicle
 from . import alt_hold
 from .mode import CopterMode

@@ -33,7 +33,7 @@ from ...events import Event, Events, emit
 from ...modes import ModeResult
 from ...state import Arming, Estimate
 from ...terrain.ground import lose_ground
-from .. import avoidance, terrain
+from .. import avoidance, terrain_following
 from ..control import altitude, altitude_start, attitude, position, position_ned, throttle_mix
 from ..control.attitude_target import limit_rates, rate_max
 from ..control.spool import DesiredSpoolState, SpoolState
@@ -171,7 +171,7 @@ def go_over_ground(v: Vehicle, pos: Vec3, control: Control) -> None:
         lose_ground(v.autopilot.terrain, v.time_us)
     else:
         position_ned.input_pos_ned(control.pos_ne, path, pos)
-    terrain.follow(v)
+    terrain_following.follow(v)
     path.pos_desired += nav.ground_d
     path.vel_desired += nav.ground_vel
     path.accel_desired += nav.ground_acc

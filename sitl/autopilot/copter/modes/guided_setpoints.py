@@ -16,14 +16,14 @@ from ....core.vectors import Quat, Vec3
 from ...command_results import CommandResult
 from ...fence.checks import allows
 from ...modes import ModeResult
-from .. import terrain
+from .. import terrain_following
 from ..control.state import AltitudeState
 from ..state import Autopilot, Vehicle
-from ..terrain import ground_below
+from ..terrain_following import ground_below
 from . import auto_yaw, guided
 from .auto import is_guided
-from .commands import is_usable, is_usable_vector
 from .guided import ACCEL, ANGLE, POS_VEL_ACCEL, POSITION, VELOCITY_ACCEL
+from .mode_commands import is_usable, is_usable_vector
 from .state import GuidedState, Modes
 
 _THRUST_IS_THRUST = 8
@@ -112,7 +112,7 @@ def set_position_over_ground(v: Vehicle, pos: Vec3, yaw: YawSetpoint) -> int:
         if follows:
             nav.over_ground = True
         else:
-            terrain.begin(nav, ground)
+            terrain_following.begin(nav, ground)
         set_yaw(v.autopilot, yaw)
     return code
 

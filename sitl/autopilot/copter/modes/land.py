@@ -11,9 +11,9 @@ from ....core.kernels import law
 from ...arming_checks import ArmingMethod
 from ...modes import ModeReason, ModeResult, ask
 from ..control.spool import DesiredSpoolState, SpoolState
-from ..parameters.flight import Pilot
+from ..parameters.flight_modes import Pilot
 from ..state import Vehicle
-from ..terrain import height_over_ground
+from ..terrain_following import height_over_ground
 from . import auto_yaw, descent, ground, precision_land
 from .alt_hold import ALT_HOLD
 from .loiter import LOITER

@@ -23,7 +23,7 @@ from ..control.attitude import Lean
 from ..control.state import DT, Control
 from ..control.throttle_mix import lean_limit
 from ..parameters import Parameters
-from ..parameters.flight import PosHold
+from ..parameters.flight_modes import PosHold
 from ..state import Vehicle
 from . import alt_hold, loiter
 from .mode import CopterMode

@@ -24,7 +24,7 @@ from ...state import Estimate
 from ..control import altitude, position, position_start
 from ..parameters import Parameters
 from ..state import Vehicle
-from ..terrain import height_over_ground
+from ..terrain_following import height_over_ground
 from . import descent, ground
 from .state import LandState
 

@@ -17,15 +17,15 @@ from ...modes import ModeResult
 from ...navigation import path
 from ...state import Estimate
 from ...terrain.state import RTL_WITHOUT, TERRAIN_DID
-from .. import terrain
+from .. import terrain_following
 from ..control import altitude, position, position_start
 from ..control.spool import DesiredSpoolState
 from ..control.state import Control
 from ..navigation import waypoint
 from ..parameters import Parameters
-from ..parameters.flight import Rtl
+from ..parameters.flight_modes import Rtl
 from ..state import Vehicle
-from ..terrain import ground_below, is_flat
+from ..terrain_following import ground_below, is_flat
 from . import auto_yaw, descent, ground, land, precision_land
 from .mode import CopterMode, never_arms
 from .state import AutoYaw, Modes, RtlState
@@ -109,7 +109,7 @@ def plan_over_ground(v: Vehicle, target: Vec3) -> None:
     if not ground_now.is_known:
         emit(ap.events, v.time_us, TERRAIN_DID, float(RTL_WITHOUT), 0.0)
     elif not is_flat(v):
-        terrain.begin(ap.modes.nav, ground_now)
+        terrain_following.begin(ap.modes.nav, ground_now)
         height, distance = ground_now.d - ap.estimate.pos.z, hypot(away.x, away.y)
         ap.modes.rtl.return_d = -return_height(height, ap.home.pos.z - target.z, distance, ap.params.RTL)
 

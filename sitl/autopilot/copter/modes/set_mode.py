@@ -22,8 +22,8 @@ from . import autotune_gains, stabilize
 from .auto import AUTO, AUTO_RTL
 from .autotune import AUTOTUNE
 from .drift import DRIFT
+from .mode_list import TITLES, has_manual_throttle, is_known, requires_pilot, requires_position, start
 from .state import Modes
-from .table import TITLES, has_manual_throttle, is_known, requires_pilot, requires_position, start
 
 _CAUSES: dict[int, str] = {
     ModeResult.INIT_FAILED: "init failed",

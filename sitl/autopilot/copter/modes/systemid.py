@@ -25,7 +25,7 @@ from .. import pilot
 from ..control import altitude, attitude, position, throttle_mix
 from ..control.spool import DesiredSpoolState
 from ..control.state import DT
-from ..parameters.flight import SystemId
+from ..parameters.flight_modes import SystemId
 from ..state import Vehicle
 from . import alt_hold, ground, stabilize
 from .acro import ACRO

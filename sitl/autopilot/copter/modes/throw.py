@@ -23,7 +23,7 @@ from ..control import altitude, altitude_start, attitude, position, position_sta
 from ..control.spool import DesiredSpoolState, SpoolState
 from ..control.state import Control
 from ..parameters import Parameters
-from ..parameters.flight import Throw
+from ..parameters.flight_modes import Throw
 from ..state import Vehicle
 from . import ground
 from .auto import AUTO

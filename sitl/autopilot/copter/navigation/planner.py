@@ -22,16 +22,16 @@ from ...navigation.leg import (
     speed_within,
     write,
 )
+from ...navigation.leg_motion import clear, evaluate
 from ...navigation.phases import Phase, State
 from ...navigation.planner import Planner, end
-from ...navigation.profile import clear, evaluate
 from ...navigation.state import LOITER_TURNS, TAKEOFF, Leg
 from ...terrain.ground import Ground
 from ..control.altitude_start import stopping_point_d
 from ..control.position_start import stopping_point_ne
 from ..parameters import Parameters
 from ..state import Autopilot
-from ..terrain import begin
+from ..terrain_following import begin
 from . import spline, spline_curve, waypoint
 from .spline_curve import SplineLimits
 from .state import Spline

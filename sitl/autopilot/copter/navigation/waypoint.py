@@ -30,7 +30,7 @@ from ..control.position_ned import input_pos_ned
 from ..control.position_start import init_ne_stopping_point, set_max_speed_accel_ne
 from ..control.state import DT, Control
 from ..parameters import Parameters
-from ..parameters.flight import Legs
+from ..parameters.flight_modes import Legs
 from . import spline
 from .state import CopterNav
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...params import fence, simulation, system
+from ...params import fence_parameters, simulation, system
 from ...params.parameter import BITS32, INT8, INT16, INT32, param
 
 
@@ -54,7 +54,7 @@ class Failsafes(system.Failsafes):
     )
 
 
-class Fence(fence.Fence):
+class Fence(fence_parameters.Fence):
     """FENCE_: with limits in height."""
 
     ACTION: float = param(

@@ -7,9 +7,9 @@ from ....core.algebra import horizontal, norm2
 from ....core.elementary import atan2
 from ....core.kernels import law
 from ....core.vectors import Vec2
-from ... import follow as lead_motion
+from ... import followed_vehicle as lead_motion
 from ...events import emit
-from ...follow import FOLLOW_OFF, FOLLOW_OFFSET
+from ...followed_vehicle import FOLLOW_OFF, FOLLOW_OFFSET
 from ...modes import ModeResult
 from .. import pilot
 from ..control import speed

@@ -15,7 +15,7 @@ from ...notes import Text
 from ..control.motors import is_skid
 from ..navigation import waypoint
 from ..state import Vehicle
-from . import table
+from . import mode_list
 from .auto import AUTO
 from .initialising import INITIALISING
 
@@ -27,7 +27,7 @@ def enter_first(v: Vehicle) -> None:
     """At boot: INITIAL_MODE; INITIALISING when that needs what is not known yet (a position, home, a mission)."""
     modes = v.autopilot.modes
     number = int(v.autopilot.params.INITIAL_MODE)
-    possible = table.is_known(number) and table.start(number, v) == ModeResult.ACCEPTED
+    possible = mode_list.is_known(number) and mode_list.start(number, v) == ModeResult.ACCEPTED
     modes.number = number if possible else INITIALISING
     modes.previous = INITIALISING
     modes.reason = ModeReason.INITIALISED
@@ -39,11 +39,11 @@ def refusal(number: int, free: bool, speed_known: bool, skid: bool) -> int:
 
     ``free``: any mode may be, disarmed or with a good position; ``skid``: the vehicle is skid-steered.
     """
-    if not table.is_known(number):
+    if not mode_list.is_known(number):
         return ModeResult.NO_SUCH_MODE
     if free:
         return ModeResult.ACCEPTED
-    if table.requires_position(number) or (table.requires_velocity(number, skid) and not speed_known):
+    if mode_list.requires_position(number) or (mode_list.requires_velocity(number, skid) and not speed_known):
         return ModeResult.REQUIRES_POSITION
     return ModeResult.ACCEPTED
 
@@ -64,7 +64,7 @@ def request(v: Vehicle, number: int, reason: int) -> int:
     cause = refusal(number, free, ap.control.speed.forward_ok, is_skid(ap.params))
     if cause == ModeResult.ACCEPTED:
         modes.nav.request_pending = 0  # legs that the old mode asked for must not move the new one
-        cause = table.start(number, v)
+        cause = mode_list.start(number, v)
     if cause != ModeResult.ACCEPTED:
         modes.nav.request_pending = pending
         emit(ap.events, v.time_us, MODE_REFUSED, float(number), float(cause))
@@ -77,14 +77,14 @@ def request(v: Vehicle, number: int, reason: int) -> int:
 
 def change_speed(v: Vehicle, speed: float) -> bool:
     """MAV_CMD_DO_CHANGE_SPEED [m/s] until the mode or its destination's kind changes; whether it was taken."""
-    return abs(speed) <= SPEED_MAX and table.CHANGE_SPEED[v.autopilot.modes.number](v, speed)
+    return abs(speed) <= SPEED_MAX and mode_list.CHANGE_SPEED[v.autopilot.modes.number](v, speed)
 
 
 def refusal_texts(number: int, cause: int) -> list[str]:
     """Status texts of a refused mode change; empty when it was accepted."""
     failed = "Flight mode change failed"
     if cause == ModeResult.GCS_BLOCKED:
-        failed = f"Mode change to {table.SHORT_NAMES[number]} denied, GCS entry disabled (FLTMODE_GCSBLOCK)"
+        failed = f"Mode change to {mode_list.SHORT_NAMES[number]} denied, GCS entry disabled (FLTMODE_GCSBLOCK)"
     return all_modes.refusal_texts(number, cause, failed)
 
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from ....core.border import RC_INPUTS
 from ....core.records import Floats, Records
 from ... import shell_parameters
-from ...params import parameters as shared
+from ...params import firmware_parameters as shared
 from ...params import simulation
 from ...params.avoidance import Avoid, PathPlanning, Proximity, ProximitySensor
 from ...params.estimator import Ekf3
-from ...params.fence import Rally
-from ...params.follow import Follow
+from ...params.fence_parameters import Rally
+from ...params.follow_parameters import Follow
 from ...params.parameter import BITS32, INT8, INT16, INT32, group, numbered, param
 from ...params.radio import RcChannel, RcMap
 from ...params.registered import with_registered

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ...params import fence, system
+from ...params import fence_parameters, system
 from ...params.parameter import BITS32, INT8, INT16, INT32, param
 
 
@@ -51,7 +51,7 @@ class Failsafes(system.Failsafes):
     OPTIONS: float = param(0, *BITS32, "", "1: radio and GCS failsafes act in HOLD, too", INT32)
 
 
-class Fence(fence.Fence):
+class Fence(fence_parameters.Fence):
     """FENCE_: what follows a breach."""
 
     TYPE: float = param(6, 0, 15, "", "Bits: 2 circle around home, 4 areas", INT8)

@@ -7,7 +7,7 @@ import math
 
 from ....core.border import Sensors
 from ....core.kernels import law
-from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
+from ....vehicles.properties.multicopter import THRUST_MOMENTUM, Properties
 from .state import Rotors
 
 PERIOD_TICKS = 20

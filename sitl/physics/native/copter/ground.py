@@ -15,7 +15,7 @@ from ....core.constants import GRAVITY, TICK_S
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Quat, Vec3
-from ....vehicles.properties.copter import Legs
+from ....vehicles.properties.multicopter import Legs
 from ..body import small_rotation
 from ..records import GROUND_LYING, GROUND_STANDING, Body
 from .state import Ground

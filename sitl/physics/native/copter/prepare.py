@@ -6,7 +6,7 @@ from __future__ import annotations
 from ....core.constants import TICK_S
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ....vehicles.properties.copter import Properties
+from ....vehicles.properties.multicopter import Properties
 from ..prepare import decay, prepare_shared
 from .state import Derived
 

@@ -17,7 +17,7 @@ from ....core.algebra import ZERO
 from ....core.kernels import law
 from ....core.records import Floats
 from ....core.vectors import Vec3
-from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
+from ....vehicles.properties.multicopter import THRUST_MOMENTUM, Properties
 from ..body import Wrench
 from ..records import Air
 from .state import Derived, Rotors

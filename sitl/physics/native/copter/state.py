@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.records import Float32, Floats, Int32, Record, array
 from ....core.vectors import Vec3
-from ....vehicles.properties.copter import ROTORS_MAX, Properties
+from ....vehicles.properties.multicopter import ROTORS_MAX, Properties
 from .. import records as shared
 
 

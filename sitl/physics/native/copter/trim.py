@@ -14,7 +14,7 @@ from ....core.algebra import ZERO, conjugate, cross, dot, multiply, norm, normal
 from ....core.kernels import law
 from ....core.records import Floats
 from ....core.vectors import Quat, Vec3
-from ....vehicles.properties.copter import THRUST_MOMENTUM
+from ....vehicles.properties.multicopter import THRUST_MOMENTUM
 from ..body import Wrench
 from .rotors import Flow, momentum_wrench, speed_squared_wrench
 from .state import Physics

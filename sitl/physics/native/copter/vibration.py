@@ -10,7 +10,7 @@ from ....core.constants import TICK_S
 from ....core.elementary import cos
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
+from ....vehicles.properties.multicopter import THRUST_MOMENTUM, Properties
 from ..sensors.imu_faults import saturate
 from .state import Rotors
 

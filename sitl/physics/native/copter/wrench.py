@@ -6,7 +6,7 @@ from __future__ import annotations
 from ....core.algebra import by_component, cross, rotate_inverse
 from ....core.kernels import law
 from ....core.vectors import Vec3
-from ....vehicles.properties.copter import THRUST_MOMENTUM, Properties
+from ....vehicles.properties.multicopter import THRUST_MOMENTUM, Properties
 from ..body import Wrench
 from .rotors import Flow, lag, momentum_wrench, speed_squared_wrench
 from .state import Physics

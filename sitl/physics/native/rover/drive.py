@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ....core.constants import TICK_S
 from ....core.kernels import law
-from ....vehicles.properties.rover import Properties
+from ....vehicles.properties.ground_vehicle import Properties
 from .state import Derived
 
 _PER_S = 1.0 / TICK_S

@@ -6,7 +6,12 @@ from __future__ import annotations
 from ....core.constants import GRAVITY, TICK_S
 from ....core.elementary import sin
 from ....core.kernels import law
-from ....vehicles.properties.rover import STEERING_FRONT_WHEELS, STEERING_SKID, STEERING_TURNING_CIRCLE, Properties
+from ....vehicles.properties.ground_vehicle import (
+    STEERING_FRONT_WHEELS,
+    STEERING_SKID,
+    STEERING_TURNING_CIRCLE,
+    Properties,
+)
 from ..prepare import decay, prepare_shared, whole_ticks
 from .state import Derived
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ....core.records import Floats, Int32, Record, array
 from ....core.vectors import Vec2
-from ....vehicles.properties.rover import Properties
+from ....vehicles.properties.ground_vehicle import Properties
 from .. import records as shared
 
 

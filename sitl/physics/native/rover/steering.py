@@ -7,7 +7,7 @@ import math
 
 from ....core.elementary import sin, tan
 from ....core.kernels import law
-from ....vehicles.properties.rover import STEERING_FRONT_WHEELS, Properties
+from ....vehicles.properties.ground_vehicle import STEERING_FRONT_WHEELS, Properties
 from .state import SERVO_RING, Derived, SteeringServo
 
 

@@ -7,7 +7,7 @@ from ....core.constants import TICK_S, TICK_US
 from ....core.kernels import inline_unit, law
 from ....core.records import Floats, Records
 from ....core.vectors import Vec2
-from ....vehicles.properties.rover import STEERING_SKID, Properties
+from ....vehicles.properties.ground_vehicle import STEERING_SKID, Properties
 from .. import battery, bench, obstacles
 from ..records import Body, Vehicle
 from ..sensors.sense import sense

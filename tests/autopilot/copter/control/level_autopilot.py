@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import Any
 
 from sitl.autopilot.copter.control import throttle_mix
+from sitl.autopilot.copter.control.control_step import drive, init
 from sitl.autopilot.copter.control.frames import load_frame
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
-from sitl.autopilot.copter.control.update import drive, init
 from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
 from sitl.core.algebra import euler_of, multiply, normalise, quat_from_rotation_vector
@@ -50,7 +50,7 @@ def arm(ap: Any, throttle: float = 0.35) -> None:
 
 
 def output(ap: Any, actuators: Any) -> None:
-    """What ``control.update`` does after the modes, on records that are not inside a vehicle."""
+    """What ``control.control_step`` does after the modes, on records that are not inside a vehicle."""
     drive(ap, actuators, 0)
 
 

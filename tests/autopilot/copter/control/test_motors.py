@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.control import motors, throttle_mix, thrust_curve
+from sitl.autopilot.copter.control.control_step import drive
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
 from sitl.autopilot.copter.control.state import DT, MotorsState
-from sitl.autopilot.copter.control.update import drive
 from sitl.autopilot.copter.parameters.control import Motors
 from tests.autopilot.copter.control.level_autopilot import arm, output
 

@@ -8,9 +8,9 @@ import math
 import pytest
 
 from sitl.autopilot.control.pid import Blocked, Pid
-from sitl.autopilot.copter.control import vibration
+from sitl.autopilot.copter.control import vibration_compensation
 from sitl.autopilot.copter.control.state import DT, VibrationState
-from sitl.autopilot.copter.control.vibration import BEGINS, ENDS, NOTHING
+from sitl.autopilot.copter.control.vibration_compensation import BEGINS, ENDS, NOTHING
 from sitl.autopilot.state import Estimate
 from sitl.core.constants import GRAVITY
 
@@ -19,7 +19,7 @@ def looks(state: VibrationState, speed: float, height: float, first: int, last: 
     """What ``watch`` sees from tenth of a second ``first`` to ``last``, when the estimate is off by so much."""
     est = Estimate()
     est.innovation_vel_d, est.innovation_pos_d = speed, height
-    return [vibration.watch(state, est, watched, 100_000 * k) for k in range(first, last)]
+    return [vibration_compensation.watch(state, est, watched, 100_000 * k) for k in range(first, last)]
 
 
 def test_it_begins_after_a_second_and_ends_after_fifteen_good_ones() -> None:
@@ -44,7 +44,7 @@ def test_the_rate_of_the_height_does_not_see_a_bias_of_the_acceleration() -> Non
         t = k * DT
         est.pos = (0.0, 0.0, 2.0 * math.sin(t))
         est.acc_ned = (0.0, 0.0, -2.0 * math.sin(t) + 2.0)
-        vibration.follow_height(state, est)
+        vibration_compensation.follow_height(state, est)
         speeds.append(state.vel - 2.0 * math.cos(t))
     assert max(map(abs, speeds[800:])) < 0.05
     assert state.bias == pytest.approx(-2.0, abs=0.05)
@@ -52,13 +52,13 @@ def test_the_rate_of_the_height_does_not_see_a_bias_of_the_acceleration() -> Non
 
 def test_throttle_follows_the_speed_and_stops_at_its_ends() -> None:
     pid, free, least = Pid(), Blocked(False, False), Blocked(True, False)
-    off = vibration.throttle_without_acceleration(pid, 0.0, 2.0, 5.0, 0.4, free)
+    off = vibration_compensation.throttle_without_acceleration(pid, 0.0, 2.0, 5.0, 0.4, free)
     assert off == pytest.approx(0.25 * 2.0 * 0.4 / GRAVITY)
     for _ in range(400):
-        vibration.throttle_without_acceleration(pid, 1.0, 0.0, 5.0, 0.4, free)
+        vibration_compensation.throttle_without_acceleration(pid, 1.0, 0.0, 5.0, 0.4, free)
     one_second = pid.integrator
     assert one_second == pytest.approx(5.0 * 0.125 * 0.4 / GRAVITY)
-    vibration.throttle_without_acceleration(pid, 1.0, 0.0, 5.0, 0.4, least)
+    vibration_compensation.throttle_without_acceleration(pid, 1.0, 0.0, 5.0, 0.4, least)
     assert pid.integrator == one_second
-    vibration.throttle_without_acceleration(pid, -1.0, 0.0, 5.0, 0.4, least)
+    vibration_compensation.throttle_without_acceleration(pid, -1.0, 0.0, 5.0, 0.4, least)
     assert pid.integrator < one_second

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter import arming
-from sitl.autopilot.copter.modes import auto, auto_yaw, commands, guided_setpoints, set_mode, update
-from sitl.autopilot.copter.modes.table import NAMES
+from sitl.autopilot.copter.modes import auto, auto_yaw, decisions, guided_setpoints, mode_commands, set_mode
+from sitl.autopilot.copter.modes.mode_list import NAMES
 from sitl.core.algebra import ZERO
 from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import fly, make
@@ -50,11 +50,11 @@ def act(v: Any, name: str, *args: Any) -> None:
     elif name == "attitude":
         guided_setpoints.set_attitude(v, True, Quat(*args[:4]), Vec3(*args[4:7]), args[7])
     elif name == "yaw":
-        commands.condition_yaw(ap, auto_yaw.Turn(*args))
+        mode_commands.condition_yaw(ap, auto_yaw.Turn(*args))
     elif name == "speed":
-        commands.change_speed(ap.control, ap.params, *args)
+        mode_commands.change_speed(ap.control, ap.params, *args)
     elif name == "takeoff":
-        commands.take_off(ap, args[0])
+        mode_commands.take_off(ap, args[0])
     elif name == "arm":
         arming.arm(v, 1, args[0])
     elif name == "disarm":
@@ -80,7 +80,7 @@ def test_modes_stay_in_known_states(in_flight, actions):
             v.time_us += 2500
             v.tick += 1
             ap.control.tick += 1
-            update.update(fleet, 0)
+            decisions.update(fleet, 0)
             assert int(ap.modes.number) in NAMES
             assert int(ap.control.motors.desired_spool) in (0, 1, 2)
             assert int(ap.arming.armed) in (0, 1) and int(ap.arming.landed) in (0, 1)

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sitl.autopilot.copter.control.state import AttitudeState, PositionState
-from sitl.autopilot.copter.modes import auto_yaw, commands
+from sitl.autopilot.copter.modes import auto_yaw, mode_commands
 from sitl.autopilot.copter.modes.auto_yaw import Turn
 from sitl.autopilot.copter.modes.state import AutoYaw, Modes
-from sitl.autopilot.copter.parameters.flight import Waypoints
+from sitl.autopilot.copter.parameters.flight_modes import Waypoints
 from sitl.autopilot.state import Estimate
 from sitl.core.scalars import wrap_pi
 from sitl.core.vectors import Vec2, Vec3
@@ -53,19 +53,19 @@ def turned(v, start, seconds=20.0):
 )
 def test_fixed_angle_goes_the_way_asked_for(flying, start, angle, direction, relative, total):
     turn_to(flying, start * DEG)
-    assert commands.condition_yaw(flying.autopilot, Turn(angle * DEG, 0.0, direction, relative)) == 0
+    assert mode_commands.condition_yaw(flying.autopilot, Turn(angle * DEG, 0.0, direction, relative)) == 0
     assert turned(flying, start * DEG)[0] == pytest.approx(total, abs=1e-6)
 
 
 @pytest.mark.parametrize(("rate", "seconds"), ((30.0, 3.0), (0.0, 1.5), (500.0, 1.5)))
 def test_turn_rate_is_the_one_asked_for_up_to_the_slew_limit(flying, rate, seconds):
-    commands.condition_yaw(flying.autopilot, Turn(90.0 * DEG, rate * DEG, 1, 0))
+    mode_commands.condition_yaw(flying.autopilot, Turn(90.0 * DEG, rate * DEG, 1, 0))
     assert turned(flying, 0.0)[1] == pytest.approx(seconds, abs=0.01)
 
 
 def test_without_a_slew_limit_it_turns_at_once(flying):
     flying.autopilot.params.ATC_SLEW_YAW = 0.0
-    commands.condition_yaw(flying.autopilot, Turn(90.0 * DEG, 0.0, 1, 0))
+    mode_commands.condition_yaw(flying.autopilot, Turn(90.0 * DEG, 0.0, 1, 0))
     assert turned(flying, 0.0, 1.0)[0] == pytest.approx(90.0)
 
 
@@ -73,7 +73,7 @@ def test_without_a_slew_limit_it_turns_at_once(flying):
 def test_absolute_turns_end_at_the_angle_within_one_circle(angle, start, direction):
     v = fly(make())
     turn_to(v, start)
-    commands.condition_yaw(v.autopilot, Turn(angle, 0.0, direction, 0))
+    mode_commands.condition_yaw(v.autopilot, Turn(angle, 0.0, direction, 0))
     offset = float(v.autopilot.modes.auto_yaw.offset)
     assert abs(offset) <= 2.0 * math.pi
     assert abs(wrap_pi(start + offset - angle)) < 1e-6
@@ -81,10 +81,10 @@ def test_absolute_turns_end_at_the_angle_within_one_circle(angle, start, directi
 
 
 def test_condition_yaw_refuses_what_it_cannot_do(flying):
-    assert commands.condition_yaw(flying.autopilot, Turn(math.nan, 0.0, 1, 0)) == 1
-    assert commands.condition_yaw(flying.autopilot, Turn(1.0, -1.0, 1, 0)) == 3
+    assert mode_commands.condition_yaw(flying.autopilot, Turn(math.nan, 0.0, 1, 0)) == 1
+    assert mode_commands.condition_yaw(flying.autopilot, Turn(1.0, -1.0, 1, 0)) == 3
     flying.autopilot.modes.number = 5
-    assert commands.condition_yaw(flying.autopilot, Turn(1.0, 0.0, 1, 0)) == 0, "taken in any mode"
+    assert mode_commands.condition_yaw(flying.autopilot, Turn(1.0, 0.0, 1, 0)) == 0, "taken in any mode"
 
 
 @pytest.mark.parametrize(
@@ -133,11 +133,11 @@ def test_the_nose_stays_where_it_is_until_the_vehicle_moves():
 
 def test_roi_is_looked_at_from_anywhere(flying):
     ap = flying.autopilot
-    commands.set_roi(ap, Vec3(10.0, 10.0, 0.0))
+    mode_commands.set_roi(ap, Vec3(10.0, 10.0, 0.0))
     assert heading(ap.modes.auto_yaw, ap.control.pos_ne, ap.estimate) == pytest.approx(math.pi / 4)
     ap.estimate.pos = ap.estimate.pos.replace(x=20.0)
     assert heading(ap.modes.auto_yaw, ap.control.pos_ne, ap.estimate) == pytest.approx(3 * math.pi / 4)
-    commands.clear_roi(ap)
+    mode_commands.clear_roi(ap)
     assert ap.modes.auto_yaw.mode == auto_yaw.LOOK_AT_NEXT_WP
 
 

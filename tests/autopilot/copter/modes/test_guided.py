@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sitl.autopilot.command_results import CommandResult
-from sitl.autopilot.copter.modes import auto_yaw, commands, guided, guided_setpoints
-from sitl.autopilot.copter.modes.commands import LARGEST
+from sitl.autopilot.copter.modes import auto_yaw, guided, guided_setpoints, mode_commands
 from sitl.autopilot.copter.modes.guided import ACCEL, GUIDED_TIMEOUT, POS_VEL_ACCEL, POSITION, TAKEOFF, VELOCITY_ACCEL
 from sitl.autopilot.copter.modes.guided_setpoints import NO_YAW, YawSetpoint
+from sitl.autopilot.copter.modes.mode_commands import LARGEST
 from sitl.core.algebra import euler_of
 from sitl.core.vectors import Quat, Vec3
 from tests.autopilot.copter.steady_copter import codes, fly, make, snapshot, turn_to, wait
@@ -170,26 +170,26 @@ def ticks(v, count):
 @pytest.mark.parametrize("name", SET_POINTS)
 def test_a_pause_holds_against_new_set_points_and_flies_on_when_it_ends(flying, name):
     modes = flying.autopilot.modes
-    assert commands.set_paused(modes, True) == CommandResult.OK
+    assert mode_commands.set_paused(modes, True) == CommandResult.OK
     assert SET_POINTS[name](flying) == CommandResult.OK
     assert ticks(flying, 40) == 0.0 and modes.guided.paused
-    commands.set_paused(modes, False)
+    mode_commands.set_paused(modes, False)
     assert ticks(flying, 40) > 0.01
 
 
 def test_a_pause_holds_against_an_attitude_and_a_lean_ends(flying):
     q = Quat(math.cos(0.1), 0.0, math.sin(0.1), 0.0)
-    commands.set_paused(flying.autopilot.modes, True)
+    mode_commands.set_paused(flying.autopilot.modes, True)
     assert guided_setpoints.set_attitude(flying, True, q, STILL, 0.5) == CommandResult.OK
     ticks(flying, 200)
     assert abs(flying.autopilot.control.attitude.target_euler[1]) < 0.02
-    commands.set_paused(flying.autopilot.modes, False)
+    mode_commands.set_paused(flying.autopilot.modes, False)
     ticks(flying, 200)
     assert flying.autopilot.control.attitude.target_euler[1] == pytest.approx(0.2, abs=0.02)
 
 
 def test_what_stops_the_vehicle_ends_a_pause_too(flying):
-    commands.set_paused(flying.autopilot.modes, True)
+    mode_commands.set_paused(flying.autopilot.modes, True)
     assert guided_setpoints.stop(flying) == CommandResult.OK
     assert not flying.autopilot.modes.guided.paused
 
@@ -208,17 +208,17 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
     ap = vehicle.autopilot
     ap.modes.number, ap.home.pos = 4, (0.0, 0.0, 1.5)
     ap.estimate.pos = ap.estimate.pos.replace(z=1.5)
-    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.NOT_ARMED
+    assert mode_commands.take_off(vehicle.autopilot, 10.0) == CommandResult.NOT_ARMED
     ap.arming.armed = 1
-    assert commands.take_off(vehicle.autopilot, math.nan) == CommandResult.NOT_FINITE
-    assert commands.take_off(vehicle.autopilot, -1.0) == CommandResult.TOO_LOW
-    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.OK
+    assert mode_commands.take_off(vehicle.autopilot, math.nan) == CommandResult.NOT_FINITE
+    assert mode_commands.take_off(vehicle.autopilot, -1.0) == CommandResult.TOO_LOW
+    assert mode_commands.take_off(vehicle.autopilot, 10.0) == CommandResult.OK
     assert (ap.modes.guided.submode, ap.modes.takeoff.target_d, ap.arming.auto_armed) == (TAKEOFF, -8.5, 1)
     ap.arming.landed = 0
-    assert commands.take_off(vehicle.autopilot, 12.0) == CommandResult.OK, "repeated in the climb"
+    assert mode_commands.take_off(vehicle.autopilot, 12.0) == CommandResult.OK, "repeated in the climb"
     assert ap.modes.takeoff.target_d == -10.5
     ap.modes.takeoff.complete = 1
-    assert commands.take_off(vehicle.autopilot, 10.0) == CommandResult.ALREADY_FLYING
+    assert mode_commands.take_off(vehicle.autopilot, 10.0) == CommandResult.ALREADY_FLYING
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_take_off_sets_a_height_above_home_and_needs_the_ground(vehicle):
 )
 def test_take_off_in_other_modes(vehicle, mode, answer):
     vehicle.autopilot.modes.number, vehicle.autopilot.arming.armed = mode, 1
-    assert commands.take_off(vehicle.autopilot, 10.0) == answer
+    assert mode_commands.take_off(vehicle.autopilot, 10.0) == answer
 
 
 def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
@@ -251,7 +251,7 @@ def test_on_the_ground_a_position_does_not_start_the_motors(vehicle):
 def test_change_speed(flying, speed, answer):
     ap = flying.autopilot
     before = float(ap.control.pos_ne.speed_max)
-    assert commands.change_speed(ap.control, ap.params, commands.HORIZONTAL, speed) == answer
+    assert mode_commands.change_speed(ap.control, ap.params, mode_commands.HORIZONTAL, speed) == answer
     assert ap.control.pos_ne.speed_max == (speed if answer == CommandResult.OK else before)
 
 

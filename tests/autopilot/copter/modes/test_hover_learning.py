@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sitl import vehicles
-from sitl.autopilot.copter.modes.update import hovers
+from sitl.autopilot.copter.modes.decisions import hovers
 from sitl.vehicle.copter import apply_sim_parameters
 
 

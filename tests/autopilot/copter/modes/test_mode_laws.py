@@ -19,6 +19,7 @@ from sitl.autopilot.copter.modes import (
     alt_hold,
     auto,
     auto_yaw,
+    decisions,
     descent,
     drift,
     flip,
@@ -31,10 +32,10 @@ from sitl.autopilot.copter.modes import (
     rtl,
     takeoff,
     throw,
-    update,
     zigzag,
 )
 from sitl.autopilot.copter.modes import circle as circle_mode
+from sitl.autopilot.copter.modes.mode_list import MODES, NAMES
 from sitl.autopilot.copter.modes.state import (
     AutoYaw,
     CircleState,
@@ -51,10 +52,9 @@ from sitl.autopilot.copter.modes.state import (
     ThrowState,
     ZigZagState,
 )
-from sitl.autopilot.copter.modes.table import MODES, NAMES
 from sitl.autopilot.copter.navigation import circle, waypoint
 from sitl.autopilot.copter.navigation.state import CopterNav
-from sitl.autopilot.copter.parameters.flight import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
+from sitl.autopilot.copter.parameters.flight_modes import Acro, Land, Legs, Pilot, PosHold, Rtl, Throw
 from sitl.autopilot.events import Events
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.modes import ModeResult
@@ -338,7 +338,7 @@ def test_hovering_is_level_and_at_rest(
 ) -> None:
     control = Control()
     control.pos_d.vel_desired, control.attitude.cos_lean, control.motors.throttle = climb, cos_lean, throttle
-    assert update.hovers(control, vel_d) == hovers
+    assert decisions.hovers(control, vel_d) == hovers
 
 
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))

@@ -7,7 +7,7 @@ import pytest
 
 from sitl.autopilot import modes as all_modes
 from sitl.autopilot.copter import failsafe
-from sitl.autopilot.copter.modes import set_mode, table
+from sitl.autopilot.copter.modes import mode_list, set_mode
 from sitl.autopilot.copter.modes.acro import ACRO
 from sitl.autopilot.copter.modes.alt_hold import ALT_HOLD
 from sitl.autopilot.copter.modes.drift import DRIFT
@@ -24,7 +24,7 @@ NEED_PILOT = (STABILIZE, ACRO, DRIFT, TURTLE)
 
 
 def test_the_table_of_modes_says_which() -> None:
-    assert sorted(table.NEED_PILOT) == sorted(NEED_PILOT)
+    assert sorted(mode_list.NEED_PILOT) == sorted(NEED_PILOT)
 
 
 @pytest.mark.parametrize("number", NEED_PILOT)

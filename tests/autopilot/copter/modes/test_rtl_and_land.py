@@ -15,7 +15,7 @@ from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.state import PilotState
-from sitl.autopilot.copter.parameters.flight import Rtl
+from sitl.autopilot.copter.parameters.flight_modes import Rtl
 from sitl.autopilot.modes import ModeReason
 from sitl.autopilot.navigation.state import LEG_ENDING
 from tests.autopilot.copter.steady_copter import codes, wait

@@ -22,16 +22,16 @@ from sitl.autopilot.copter.modes.follow import FOLLOW
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.autopilot.copter.modes.land import LAND
 from sitl.autopilot.copter.modes.loiter import LOITER
+from sitl.autopilot.copter.modes.mode_list import NAMES
 from sitl.autopilot.copter.modes.poshold import POSHOLD
 from sitl.autopilot.copter.modes.rtl import RTL
 from sitl.autopilot.copter.modes.smart_rtl import SMART_RTL
 from sitl.autopilot.copter.modes.stabilize import STABILIZE
 from sitl.autopilot.copter.modes.systemid import SYSTEMID
-from sitl.autopilot.copter.modes.table import NAMES
 from sitl.autopilot.copter.modes.throw import THROW
 from sitl.autopilot.copter.modes.turtle import TURTLE
 from sitl.autopilot.copter.modes.zigzag import ZIGZAG
-from sitl.autopilot.follow import FOLLOW_OFF
+from sitl.autopilot.followed_vehicle import FOLLOW_OFF
 from sitl.autopilot.modes import MODE_CHANGED, MODE_REFUSED, ModeReason, ModeResult
 from tests.autopilot.copter.steady_copter import codes, fly, snapshot
 

@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from sitl.autopilot.copter.modes import simple, table
+from sitl.autopilot.copter.modes import mode_list, simple
 from sitl.autopilot.copter.modes.acro import ACRO
 from sitl.autopilot.copter.modes.circle import CIRCLE
 from sitl.autopilot.copter.modes.flip import FLIP
@@ -50,4 +50,4 @@ def test_bits_of_the_mode_switch(position: int, number: int) -> None:
 
 
 def test_acro_circle_and_flip_fly_by_the_nose() -> None:
-    assert [number for number in table.ALL if table.ignores_simple(number)] == [ACRO, CIRCLE, FLIP]
+    assert [number for number in mode_list.ALL if mode_list.ignores_simple(number)] == [ACRO, CIRCLE, FLIP]

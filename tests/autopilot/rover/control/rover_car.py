@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sitl.autopilot.rover.control import forward_speed, update
+from sitl.autopilot.rover.control import control_step, forward_speed
 from sitl.autopilot.rover.control.state import DT, PERIOD_US, Control, SpeedState
 from sitl.autopilot.rover.parameters import TABLE, Parameters
 from sitl.autopilot.state import Autopilot
@@ -58,7 +58,7 @@ def make_vehicle(**params: float) -> Any:
     v.autopilot.estimate.status_flags = HORIZONTAL
     v.autopilot.estimate.position_ok = 1
     set_motion(v, 0.0, 0.0, 0.0)
-    update.init(v.autopilot.control, v.autopilot.params)
+    control_step.init(v.autopilot.control, v.autopilot.params)
     return v
 
 
@@ -86,10 +86,10 @@ def set_motion(v: Any, heading: float, speed: float, turn_rate: float) -> None:
 
 
 def finish(v: Any) -> None:
-    """The end of a period, after the mode: ``control.update``, with the speed that was sensed at its start; time goes
-    on."""
+    """The end of a period, after the mode: ``control.control_step``, with the speed that was sensed at its start; time
+    goes on."""
     sense(v)
-    update.update([v], 0)
+    control_step.update([v], 0)
     v.time_us += PERIOD_US
 
 

@@ -14,12 +14,12 @@ from typing import Any
 from sitl.autopilot.events import EVENT_RING
 from sitl.autopilot.notes import ChecksFailed, Text
 from sitl.autopilot.rover import arming
-from sitl.autopilot.rover.control import update as control
+from sitl.autopilot.rover.control import control_step as control
 from sitl.autopilot.rover.control.state import DT, PERIOD_US
-from sitl.autopilot.rover.events import EVENTS
+from sitl.autopilot.rover.event_list import EVENTS
 from sitl.autopilot.rover.firmware import power_on
+from sitl.autopilot.rover.modes import decisions as modes
 from sitl.autopilot.rover.modes import guided_setpoints
-from sitl.autopilot.rover.modes import update as modes
 from sitl.autopilot.rover.navigation.planner import PLANNER
 from sitl.autopilot.rover.parameters import TABLE
 from sitl.autopilot.rover.state import Autopilot

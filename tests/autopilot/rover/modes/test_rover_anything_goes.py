@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from sitl.autopilot.rover import arming, motor_test
 from sitl.autopilot.rover.modes import guided_setpoints, set_mode
+from sitl.autopilot.rover.modes.mode_list import NAMES
 from sitl.autopilot.rover.modes.set_mode import change_speed
-from sitl.autopilot.rover.modes.table import NAMES
 from tests.autopilot.rover.modes.driven_rover import (
     Rover,
     drive_to,

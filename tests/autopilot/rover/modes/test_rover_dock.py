@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from sitl.autopilot.follow import FOLLOW_OFF, FOLLOW_OFFSET
+from sitl.autopilot.followed_vehicle import FOLLOW_OFF, FOLLOW_OFFSET
 from sitl.autopilot.rover.control import position, speed
 from sitl.autopilot.rover.modes import dock, drive, follow
 from sitl.autopilot.rover.modes.dock import DOCK_DID, lead_in, slowed

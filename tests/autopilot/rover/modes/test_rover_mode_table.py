@@ -11,8 +11,8 @@ from sitl.autopilot.failsafe_checks import FAILSAFE
 from sitl.autopilot.modes import MODE_REFUSED, ModeResult
 from sitl.autopilot.rover import failsafe
 from sitl.autopilot.rover.crash import CRASH_HOLD
-from sitl.autopilot.rover.events import EVENTS
-from sitl.autopilot.rover.modes import set_mode, table
+from sitl.autopilot.rover.event_list import EVENTS
+from sitl.autopilot.rover.modes import mode_list, set_mode
 from sitl.autopilot.rover.modes.acro import ACRO
 from sitl.autopilot.rover.modes.circle import CIRCLE_ADAPTED
 from sitl.autopilot.rover.modes.guided import GUIDED_TIMEOUT
@@ -24,22 +24,22 @@ from tests.autopilot.rover.modes.driven_rover import Rover
 
 
 def test_numbers_are_ardurovers() -> None:
-    assert table.NAMES == {
+    assert mode_list.NAMES == {
         0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 6: "FOLLOW", 7: "SIMPLE", 8: "DOCK", 9: "CIRCLE",
         10: "AUTO", 11: "RTL", 12: "SMART_RTL", 15: "GUIDED", 16: "INITIALISING",
     }  # fmt: skip
-    assert [n for n in range(30) if table.is_known(n)] == sorted(table.NAMES)
+    assert [n for n in range(30) if mode_list.is_known(n)] == sorted(mode_list.NAMES)
 
 
 def test_only_hands_and_hold_do_without_a_position() -> None:
-    free = [n for n in table.NAMES if not table.requires_position(n)]
-    assert [table.NAMES[n] for n in free] == ["MANUAL", "ACRO", "STEERING", "HOLD"]
-    assert [n for n in free if not table.requires_velocity(n, False)] == [MANUAL, HOLD]
-    assert not table.requires_velocity(ACRO, True)  # a skid-steered one turns without a speed
+    free = [n for n in mode_list.NAMES if not mode_list.requires_position(n)]
+    assert [mode_list.NAMES[n] for n in free] == ["MANUAL", "ACRO", "STEERING", "HOLD"]
+    assert [n for n in free if not mode_list.requires_velocity(n, False)] == [MANUAL, HOLD]
+    assert not mode_list.requires_velocity(ACRO, True)  # a skid-steered one turns without a speed
 
 
 def test_ways_home_are_not_for_arming() -> None:
-    refused = [table.NAMES[n] for n in table.NAMES if not table.allows_arming(n)]
+    refused = [mode_list.NAMES[n] for n in mode_list.NAMES if not mode_list.allows_arming(n)]
     assert refused == ["RTL", "SMART_RTL", "INITIALISING"]
 
 
@@ -81,15 +81,15 @@ def test_what_is_said(code: int, a: float, b: float, said: list[tuple[int, str]]
     assert [(note.severity, note.text) for note in EVENTS[code].notes(None, a, b)] == said
 
 
-@pytest.mark.parametrize("number", [*table.NAMES, 2, 99])
+@pytest.mark.parametrize("number", [*mode_list.NAMES, 2, 99])
 @pytest.mark.parametrize("speed_known", [False, True])
 def test_a_mode_is_refused_only_for_what_it_lacks(number: int, speed_known: bool) -> None:
     assert set_mode.refusal(number, True, speed_known, False) == (
-        ModeResult.ACCEPTED if number in table.NAMES else ModeResult.NO_SUCH_MODE
+        ModeResult.ACCEPTED if number in mode_list.NAMES else ModeResult.NO_SUCH_MODE
     )
-    if number in table.NAMES:
-        needs = table.requires_velocity(number, False)
-        refused = table.requires_position(number) or (needs and not speed_known)
+    if number in mode_list.NAMES:
+        needs = mode_list.requires_velocity(number, False)
+        refused = mode_list.requires_position(number) or (needs and not speed_known)
         assert set_mode.refusal(number, False, speed_known, False) == (
             ModeResult.REQUIRES_POSITION if refused else ModeResult.ACCEPTED
         )

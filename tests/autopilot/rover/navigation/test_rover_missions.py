@@ -10,7 +10,7 @@ import pytest
 
 from sitl.autopilot.command_results import CommandResult
 from sitl.autopilot.copter.mission import COMMANDS as COPTER
-from sitl.autopilot.estimation.events import EKF_ORIGIN_SET
+from sitl.autopilot.estimation.estimator_events import EKF_ORIGIN_SET
 from sitl.autopilot.events import emit
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
