@@ -15,6 +15,7 @@ from sitl.autopilot.control.pid import (
     Pid,
     lowpass_gain,
     relax_integrator,
+    reset_filter,
     update_pid,
     update_pid_directional,
 )
@@ -168,3 +169,33 @@ def test_relaxing_integrator_has_the_time_constant():
     pid = fresh(1.0)
     relax_integrator(pid, 0.2, DT, 0.16)
     assert pid.integrator == pytest.approx(1.0 - 0.8 * DT / (DT + 0.16))
+
+
+def test_a_lowered_limit_holds_at_once_also_without_an_error():
+    for blocked in (FREE, Blocked(True, True)):
+        pid = fresh(0.5)
+        gains = Gains(0.0, 1.0, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+        update_pid_directional(pid, 0.0, 0.0, DT, blocked, gains)
+        assert pid.integrator == 0.3
+
+
+@pytest.mark.parametrize("bad", [(math.nan, 0.0), (0.0, math.inf)])
+def test_a_loop_that_knows_directions_takes_no_bad_numbers_either(bad):
+    pid = fresh(0.1)
+    before = as_dict(pid)
+    gains = Gains(1.0, 1.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0)
+    assert update_pid_directional(pid, *bad, DT, FREE, gains) == 0.0 and as_dict(pid) == before
+
+
+@pytest.mark.parametrize(("error", "wanted"), [(10.0, 0.4), (-10.0, -0.4), (0.2, 0.2)])
+def test_the_limit_of_p_and_d_holds_both_ways_and_leaves_the_rest(error, wanted):
+    gains = Gains(1.0, 0.0, 0.0, 0.5, 0.0, 9.0, 0.4, 0.0, 0.0, 0.0)
+    assert update_pid(fresh(), error, 0.0, DT, False, gains) == pytest.approx(wanted + 0.5 * error)
+
+
+def test_a_loop_that_was_reset_takes_its_next_input_as_it_is():
+    pid = fresh()
+    saturating(pid, 1.0, 0.0, kd=1.0, hz_error=1.0)
+    reset_filter(pid)
+    assert saturating(pid, 5.0, 0.0, kd=1.0, hz_error=1.0) == 0.0
+    assert (pid.error, pid.target_derivative) == (5.0, 0.0)

@@ -79,6 +79,15 @@ def test_a_missing_height_of_the_ground_ends_in_rtl(flying: Any, mode: int, afte
     assert len(told(flying, TERRAIN_DID)) == len(said)
 
 
+def test_on_its_way_home_over_the_ground_it_begins_anew_at_heights_above_home(flying: Any) -> None:
+    ap = flying.autopilot
+    ap.home.is_set, ap.params.RTL.ALT, ap.params.RTL.ALT_TYPE, ap.params.RTL.CONE_SLOPE = 1, 1500.0, 1.0, 0.0
+    ap.modes.nav.over_ground, ap.modes.rtl.state, ap.modes.rtl.return_d = 1, 3, -99.0
+    without_ground(flying, 6)
+    assert (ap.modes.nav.over_ground, ap.modes.rtl.state) == (0, 1)
+    assert ap.modes.rtl.return_d == pytest.approx(-15.0)
+
+
 def test_without_a_home_it_lands_and_on_the_ground_it_disarms(flying: Any) -> None:
     ap = flying.autopilot
     ap.home.is_set = 0

@@ -108,7 +108,6 @@ def mix(motors: MotorsState, count: int, demands: Demands, yaw_headroom: float, 
     if throttle_avg_max + low < 0.0:
         scale = min(scale, -throttle_avg_max / low)
     low *= scale
-    high *= scale
     base = -low
     rise = throttle - base
     if scale < 1.0:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sitl.autopilot.copter.control import throttle_mix
+from sitl.autopilot.copter.control import altitude_start, position_start, throttle_mix
 from sitl.autopilot.copter.control.control_step import drive, init
 from sitl.autopilot.copter.control.frames import load_frame
 from sitl.autopilot.copter.control.spool import DesiredSpoolState, SpoolState
@@ -15,7 +15,7 @@ from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.copter.state import Autopilot
 from sitl.core.algebra import euler_of, multiply, normalise, quat_from_rotation_vector
 from sitl.core.border import Actuators
-from sitl.core.vectors import Quat
+from sitl.core.vectors import Euler, Quat, Vec3
 
 
 def make_autopilot() -> Any:
@@ -68,3 +68,16 @@ def turn(ap: Any, dt: float, authority: tuple[float, float, float] = (120.0, 120
     demands = [min(max(float(demand), -1.0), 1.0) for demand in (m.roll, m.pitch, m.yaw)]
     est.rates = [r + (a * d - 0.3 * r) * dt for r, a, d in zip(est.rates, authority, demands, strict=True)]
     set_attitude(ap, multiply(est.q, quat_from_rotation_vector(est.rates * dt)))
+
+
+def moving(ap: Any) -> Any:
+    """The controllers of a vehicle somewhere, with a velocity and a lean to the right."""
+    ap.control.tick = 100
+    ap.estimate.pos, ap.estimate.vel = Vec3(1.0, -2.0, -30.0), Vec3(3.0, 4.0, -1.5)
+    set_attitude(ap, quat_from_rotation_vector(Vec3(0.2, 0.0, 0.0)))
+    ap.control.attitude.target_euler = Euler(0.2, 0.0, 0.0)
+    ap.control.attitude.lean_max = 1.2
+    ap.estimate.reset_ne_count, ap.estimate.reset_d_count = 3, 4
+    position_start.set_max_speed_accel_ne(ap.control.pos_ne, ap.params, 10.0, 2.5)
+    altitude_start.set_max_speed_accel_d(ap.control.pos_d, ap.params.PSC, 1.5, 2.5, 1.0)
+    return ap.control

@@ -62,3 +62,31 @@ def test_throttle_follows_the_speed_and_stops_at_its_ends() -> None:
     assert pid.integrator == one_second
     vibration_compensation.throttle_without_acceleration(pid, -1.0, 0.0, 5.0, 0.4, least)
     assert pid.integrator < one_second
+
+
+@pytest.mark.parametrize(("speed", "height", "runs"), [(1.0, 0.5, False), (1.1, 0.3, False), (1.01, 0.31, True)])
+def test_it_runs_away_above_both_limits(speed: float, height: float, runs: bool) -> None:
+    assert (BEGINS in looks(VibrationState(), speed, height, 1, 20)) == runs
+
+
+@pytest.mark.parametrize(("speed", "ends"), [(0.5, True), (0.51, False)])
+def test_it_is_good_at_half_a_metre_a_second(speed: float, ends: bool) -> None:
+    state = VibrationState()
+    state.found = True
+    assert (ENDS in looks(state, speed, 0.5, 1, 160)) == ends
+
+
+def test_disarmed_it_is_good() -> None:
+    state = VibrationState()
+    state.found = True
+    assert ENDS in looks(state, 5.0, 5.0, 1, 160, watched=False)
+
+
+def test_a_good_moment_starts_the_second_anew_and_a_bad_one_the_fifteen() -> None:
+    state = VibrationState()
+    looks(state, 1.5, 0.5, 1, 11)
+    looks(state, 0.0, 0.0, 11, 12)
+    assert BEGINS not in looks(state, 1.5, 0.5, 12, 23) and BEGINS in looks(state, 1.5, 0.5, 23, 24)
+    looks(state, 0.0, 0.0, 24, 170)
+    looks(state, 0.6, 0.0, 170, 171)
+    assert ENDS not in looks(state, 0.0, 0.0, 171, 322) and ENDS in looks(state, 0.0, 0.0, 322, 323)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import pytest
 
-from sitl.autopilot import modes as all_modes
 from sitl.autopilot.copter import failsafe
 from sitl.autopilot.copter.modes import mode_list, set_mode
 from sitl.autopilot.copter.modes.acro import ACRO
@@ -19,7 +18,7 @@ from sitl.autopilot.copter.modes.turtle import TURTLE
 from sitl.autopilot.modes import ModeReason, ModeResult
 from tests.autopilot.copter.steady_copter import fly
 
-REASONS = [value for name, value in vars(all_modes).items() if name.startswith("REASON_")]
+REASONS = list(ModeReason)
 NEED_PILOT = (STABILIZE, ACRO, DRIFT, TURTLE)
 
 
