@@ -194,6 +194,7 @@ class Switchboard:
             if self.journal is not None:
                 self.journal.left(channel)
             self._removed(channel)
+            self._has_spools = any(c.spool is not None for c in self.channels)
 
     def wait(self, seconds: float) -> bool:
         """Sleep until a socket has something to read, at most ``seconds`` of wall time. True when one has."""

@@ -188,6 +188,20 @@ def test_a_winch_winds_at_a_rate() -> None:
     assert b.command(WINCH, 1, 3) == FAILED
 
 
+@pytest.mark.parametrize("most", [0.0, -1.0])
+def test_a_winch_that_may_not_wind_holds_the_line(most: float) -> None:
+    for act in ((2, 0, 1.5), (1, 5, 0.5)):
+        b = bench(**REEL, WINCH_RATE_MAX=most)
+        assert b.command(WINCH, 1, *act) == ACCEPTED
+        b.run(1.0)
+        assert (length(b).line_length, length(b).speed, pulse(b)) == (0.0, 0.0, 1500)
+
+
+@pytest.mark.parametrize("by, taken", [(32767.0, True), (-32767.0, True), (32768.0, False)])
+def test_a_winch_has_so_much_line(by: float, taken: bool) -> None:
+    assert bench(**REEL).command(WINCH, 1, 1, by, 0) == (ACCEPTED if taken else FAILED)
+
+
 SPRAY = {"SPRAY_ENABLE": 1.0, "SERVO9_FUNCTION": 22.0, "SERVO10_FUNCTION": 23.0}
 
 

@@ -82,3 +82,13 @@ def test_each_set_point_of_a_px4_has_a_message_and_a_mode():
     names = {setpoint.name for setpoint in kind.setpoints}
     assert names == set(kind.encode) == set(kind.modes) and "attitude" not in names
     assert 0 < kind.repeat_us < 500_000  # COM_RC_LOSS_T is shorter than COM_OF_LOSS_T
+
+
+@pytest.mark.parametrize(
+    ("number", "parameters"),
+    [(0, (1, 0, 0)), (65535, (1, 65535, 0)), (1 << 16, (1, 1, 0)), (4 << 16 | 6 << 24, (1, 4, 6)),
+     (255 << 16 | 255 << 24, (1, 255, 255))],
+)  # fmt: skip
+def test_a_main_mode_stands_in_the_third_byte_of_px4s_numbers(number, parameters):
+    """Its first one, MANUAL, too: smaller numbers are ArduPilot's."""
+    assert mode_parameters(number) == parameters

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from ...core.geodesy import add_offset, offset_ne
+from ...core.geodesy import offset_ne
 from ...core.vectors import Vec3
+from .. import home
 from ..state import Autopilot
 from .item import RELATIVE_FRAMES, TERRAIN_FRAMES, MissionItem
 
@@ -28,15 +29,12 @@ def point(ap: Autopilot, item: MissionItem, default: Vec3) -> Vec3:
 
 
 def set_home(ap: Autopilot, item: MissionItem) -> None:
-    """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no location), else to the item's location."""
-    home, estimate = ap.home, ap.estimate
-    if not estimate.origin_set:
-        return
+    """DO_SET_HOME: to where the vehicle is (parameter 1 is 1, or no location), else to the item's location. Unlike a
+    client's, it does not keep home from being moved by the next arming (ArduPilot's ``set_home(location, false)``)."""
+    state, estimate = ap.home, ap.estimate
+    locked = state.locked
     if item.p1 == 1.0 or (item.no_location and item.z == 0.0):
-        home.pos = estimate.pos
-        lat, lon = add_offset(estimate.origin_lat, estimate.origin_lon, home.pos.x, home.pos.y)
+        home.set_here(state, estimate)
     else:
-        home.pos = point(ap, item, Vec3(0.0, 0.0, down(ap, item)))
-        lat, lon = item.x, item.y
-    home.lat, home.lon, home.alt = round(lat), round(lon), estimate.origin_alt - home.pos.z
-    home.is_set = home.locked = True
+        home.set_location(state, estimate, item.x, item.y, estimate.origin_alt - down(ap, item))
+    state.locked = locked

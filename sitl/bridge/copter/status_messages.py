@@ -202,8 +202,6 @@ def rpm(m: Rpm, v: Copter) -> bool:
 def wind(m: Wind, v: Copter) -> bool:
     """WIND: from -180 deg with 0 m/s: the estimator knows no wind, as ArduCopter's without a model of the drag."""
     m.direction = -180.0
-    m.speed = 0.0
-    m.speed_z = 0.0
     return True
 
 

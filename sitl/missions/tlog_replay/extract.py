@@ -22,6 +22,7 @@ ANSWER_S = 3.0
 UPLOAD_S = 60.0
 """An upload takes no longer than this."""
 GROUND_STATION: Sender = (255, 190)
+ITEMS = ("MISSION_ITEM", "MISSION_ITEM_INT")
 
 
 @dataclass(frozen=True)
@@ -81,10 +82,10 @@ def _commanded(log: Log) -> Found:
     for at, message in enumerate(sent):
         sender = (message.system, message.component)
         if message.name == "MISSION_COUNT":
-            if getattr(message.fields, "mission_type", 0):
-                _count(found, "fences and rally points")
-            else:
+            if _is_of_a_mission(message):
                 _take(found, _upload(log, message, sent[at + 1 :], sender))
+            else:
+                _count(found, "fences and rally points")
         elif message.name in LEFT_OUT:
             _count(found, LEFT_OUT[message.name])
         elif message.name in PASSED:
@@ -131,7 +132,7 @@ def _upload(log: Log, count: LoggedMessage, after: list[LoggedMessage], sender: 
             continue
         if message.name == "MISSION_COUNT":
             return None  # begun again
-        if message.name in ("MISSION_ITEM", "MISSION_ITEM_INT") and not getattr(message.fields, "mission_type", 0):
+        if message.name in ITEMS and _is_of_a_mission(message):
             items[int(message.fields.seq)] = item_of(message)
             end = message.time
     if len(items) < count.fields.count:
@@ -141,10 +142,15 @@ def _upload(log: Log, count: LoggedMessage, after: list[LoggedMessage], sender: 
     return Upload(count.time, sender, tuple(items[seq] for seq in sorted(items)), result)
 
 
+def _is_of_a_mission(message: LoggedMessage) -> bool:
+    """Else of a fence, or of rally points (MAV_MISSION_TYPE)."""
+    return not getattr(message.fields, "mission_type", 0)
+
+
 def _observed(log: Log) -> list[Step]:
     """Steps that would explain what the vehicle says of itself."""
     steps: list[Step] = []
-    messages = log.of_vehicle("MISSION_ITEM", "MISSION_ITEM_INT")
+    messages = filter(_is_of_a_mission, log.of_vehicle(*ITEMS))
     items = {int(message.fields.seq): item_of(message) for message in messages}
     armed = log.changes("armed")
     first = next((time for time, state in armed if state), log.duration)

@@ -417,7 +417,7 @@ def test_set_home_and_roi() -> None:
     roi = MissionItem(MavCmd.DO_SET_ROI, x=LAT + 1000, y=LON + 1000)
     p = Vehicle(MissionItem(MavCmd.DO_SET_HOME, 0, x=LAT + 2000, y=LON, z=600.0), roi, WP).start()
     home = p.v.autopilot.home
-    assert (int(home.lat), float(home.alt), int(home.locked)) == (LAT + 2000, 600.0, 1)
+    assert (int(home.lat), float(home.alt), int(home.locked)) == (LAT + 2000, 600.0, 0)
     assert home.pos[0] == pytest.approx(2000 * 0.0111319, rel=1e-3)
     assert p.v.autopilot.modes.auto_yaw.roi[0] == pytest.approx(11.13, abs=0.01)
     p = Vehicle(MissionItem(MavCmd.DO_SET_HOME, p1=1.0), WP).start()

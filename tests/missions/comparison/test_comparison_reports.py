@@ -56,6 +56,11 @@ def test_without_matplotlib_it_says_what_is_missing(
     assert "<img" not in text
 
 
+@pytest.mark.parametrize("given, shown", [("", "slow.rec"), ("Square <1>", "Square &lt;1&gt;")])
+def test_a_page_without_a_title_has_the_name_of_the_flights_file(differing: Comparison, given: str, shown: str) -> None:
+    assert f"<title>{shown}: does not fly like the golden flight</title>" in report.html(differing, given)
+
+
 def test_junit_has_a_case_for_each_metric(differing: Comparison, tmp_path: Path) -> None:
     report.report_write(differing, tmp_path)
     suite = xml.parse(tmp_path / report.JUNIT).getroot().find("testsuite")

@@ -201,6 +201,17 @@ def test_a_heartbeat_late_is_no_delay_where_the_log_is_coarse() -> None:
     assert measure(pair(track, late))["delay"].max == pytest.approx(0.7, abs=0.01)
 
 
+@pytest.mark.parametrize("late, noted", [(0.1, True), (2.0, True), (2.1, False), (3.5, False)])
+def test_clocks_are_brought_together_by_two_seconds_at_most(late: float, noted: bool) -> None:
+    """A heartbeat comes once a second, and one may be lost."""
+    track = straight(20.0, wait=5.0)
+    other = replace(track, modes=[(0.0, "GUIDED"), (late, "AUTO")], armed=[(0.0, True)])
+    found = pair(track, other, coarse=True)
+    assert [note for note in found.notes if "clocks" in note] == (
+        [f"clocks brought together by {-late:+.2f} s: a log tells when AUTO began to a heartbeat only"] if noted else []
+    )
+
+
 def test_what_happened_before_the_start_stays_there_when_clocks_are_brought_together() -> None:
     """The new flight's log tells of AUTO at 0.7 s as golden's at 1 s: its clock begins 0.3 s before its AUTO."""
     track = later(straight(20.0, wait=5.0), 1.0)
@@ -281,3 +292,14 @@ def test_a_track_ends_where_it_may_be_no_longer(core: Core, monkeypatch: pytest.
     track = observer.track()
     simulation.close()
     assert track.t[-1] - track.t[0] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("ahead", [0.05, -0.05, 0.15, -0.15])
+def test_matches_lie_between_samples_on_either_side(ahead: float) -> None:
+    """At 2 m/s, and 0.2 m from sample to sample: who is 5 cm ahead of a sample is a fortieth of a second early."""
+    golden, new = straight(20.0), moved(straight(20.0), slice(1, 2), (ahead,))
+    found = match(new, golden)
+    on_the_way = slice(5, 90)
+    assert found.delay[on_the_way] == pytest.approx(-ahead / 2.0, abs=1e-6)
+    assert found.cross[on_the_way] == pytest.approx(0.0, abs=1e-6)
+    assert (found.index[on_the_way] - np.arange(201)[on_the_way]) == pytest.approx(ahead / 0.2, abs=1e-6)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ from benchmarks.recorded.pilot import Pilot, items
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import encode_v2
 from sitl.logs.tlog import read_tlog
+from sitl.missions.tlog_replay.extract import Script, extract
+from sitl.missions.tlog_replay.log import Log
 from sitl.run import runner
 from sitl.simulation import Core, Simulation
 
@@ -83,3 +86,23 @@ def rows(path: Path) -> list[tuple[float, bytes]]:
 def system_of(raw: bytes) -> int:
     """Who sent a frame."""
     return raw[5]
+
+
+Extract = Callable[..., Script]
+
+
+def beat(time: float, armed: bool = False, mode: int = 0) -> tuple[float, bytes]:
+    return time, frame("HEARTBEAT", type=2, autopilot=3, base_mode=128 * armed, custom_mode=mode)
+
+
+MODE = 0.5, frame("COMMAND_LONG", 255, 190, target_system=1, command=176, param1=1.0, param2=4.0)
+"""With it the log has commands: nothing is taken from what the vehicle says."""
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Extract:
+    def of(*rows: tuple[float, bytes], begins: tuple[tuple[float, bytes], ...] = (beat(0.0), MODE)) -> Script:
+        made = sorted((*begins, *rows), key=lambda row: row[0])
+        return extract(Log(write(tmp_path / "made.tlog", made)))
+
+    return of

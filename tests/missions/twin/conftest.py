@@ -68,7 +68,7 @@ Log = Callable[..., Path]
 @pytest.fixture
 def written(tmp_path: Path) -> Log:
     """Writes a log: ten seconds armed from 20 s on, a climb of 1 m/s to 5 m; ``more``: further messages, ``without``:
-    names that are left out, ``height``: of the climb [m], ``firmware``."""
+    names that are left out of the others, ``height``: of the climb [m], ``firmware``."""
 
     def write(
         *more: tuple[Any, ...],
@@ -89,8 +89,7 @@ def written(tmp_path: Path) -> Log:
                 ("POS", t, 473977000, 85456000, 488.0 + up, up, up), ("ATT", t, 0.0, 0.0, 0.0, 0.0, 90.0, 90.0),
                 ("XKF1", t, 0, 0.0, 0.0, -1.0, 3.0, 4.0, 0.5 - up), ("RCIN", t, 1500, 1500, 1000 + k, 1500, 1200, 0),
             ]  # fmt: skip
-        rows += more
-        rows = sorted((row for row in rows if row[0] not in without), key=lambda row: row[1])
+        rows = sorted((*(row for row in rows if row[0] not in without), *more), key=lambda row: row[1])
         path = tmp_path / "small.bin"
         path.write_bytes(binary(rows, {name: FORMATS[name] for name in FORMATS}))
         return path

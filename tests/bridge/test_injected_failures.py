@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Faults as a bridge carries them out: what INJECT_FAILURE takes, what a client sets meanwhile, when a fault acts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from sitl.bridge.services.failure_injection import FaultService
+from sitl.client import Client
+from sitl.simulation import Core, Simulation
+
+ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
+OK, OFF, STUCK, WRONG = 0, 1, 2, 4
+GYRO, GPS, BATTERY, MOTOR, RC = 0, 4, 100, 101, 104
+
+
+@pytest.fixture(scope="module")
+def flown(core: Core) -> Client:
+    return Client(Simulation("erle_copter", core=core, params={"SYS_FAILURE_EN": 1}))
+
+
+@pytest.fixture
+def client(flown: Client) -> Iterator[Client]:
+    """A copter on the ground without faults; what a test does to it is undone."""
+    with flown.fork():
+        service = flown.simulation.bridge.get(FaultService)
+        service.history = None
+        service.keep_history()
+        yield flown
+
+
+def order(client: Client, *params: float) -> int:
+    return int(client.request("INJECT_FAILURE", *params) or 0)
+
+
+def told(client: Client) -> list[str]:
+    found = client.simulation.bridge.get(FaultService).history
+    assert found is not None
+    return [str(acted).removeprefix("fault ") for acted in found.finish(client.simulation.time_us)]
+
+
+@pytest.mark.parametrize(
+    ("params", "result"),
+    [
+        ((GPS, OFF, 0), ACCEPTED), ((GPS, OFF, 1), ACCEPTED), ((GPS, OFF, 3), DENIED), ((GPS, OFF, -1), DENIED),
+        ((GPS, 0.5, 0), UNSUPPORTED), ((GPS, -1, 0), UNSUPPORTED), ((GPS, 7, 0), ACCEPTED), ((GPS, 8, 0), UNSUPPORTED),
+        ((MOTOR, OFF, 4), ACCEPTED), ((MOTOR, OFF, 5), DENIED), ((MOTOR, OK, 4), ACCEPTED), ((MOTOR, OK, 5), DENIED),
+        ((RC, STUCK, 16), ACCEPTED), ((RC, STUCK, 17), DENIED), ((RC, OFF, 1), ACCEPTED), ((RC, OFF, 2), DENIED),
+        ((GYRO, OFF, 2), ACCEPTED), ((GYRO, OFF, 3), DENIED), ((99, OFF, 0), UNSUPPORTED),
+    ],
+)  # fmt: skip
+def test_units_types_and_instances(client: Client, params: Any, result: int) -> None:
+    """FAILURE_UNIT, FAILURE_TYPE; instances from 1, 0 is all of them."""
+    assert order(client, *params) == result
+
+
+def test_a_repair_is_of_one_instance_or_of_all(client: Client) -> None:
+    for motor in (1, 2, 4):
+        order(client, MOTOR, OFF, motor)
+    assert client.params["SIM_ENGINE_FAIL"] == 0b1011
+    order(client, MOTOR, OK, 2)
+    assert client.params["SIM_ENGINE_FAIL"] == 0b1001
+    order(client, MOTOR, OK, 0)
+    assert client.params["SIM_ENGINE_FAIL"] == 0 and client.simulation.bridge.get(FaultService).texts == []
+
+
+def test_what_a_client_sets_meanwhile_stays(client: Client) -> None:
+    service = client.simulation.bridge.get(FaultService)
+    client.simulation.fail("battery=9")
+    assert service.texts == ["battery/wrong=9.0@" + service.texts[0].split("@")[1]] and not service.is_setting
+    client.params["SIM_BATT_VOLTAGE"] = 11.0
+    client.delay(0.2)
+    assert client.params["SIM_BATT_VOLTAGE"] == 11.0
+    client.simulation.repair()
+    assert client.params["SIM_BATT_VOLTAGE"] == 11.0
+
+
+@pytest.mark.parametrize(
+    ("override", "why"),
+    [
+        ({}, "channel 10 is not transmitted; there are 1, 2, 3, 4, 5, 6, 7, 8"),
+        ({"chan10_raw": 1500}, ""),
+        ({"chan9_raw": 1500}, "channel 10 is not transmitted; there are 1, 2, 3, 4, 5, 6, 7, 8, 9"),
+    ],
+)
+def test_a_channel_that_a_client_overrides_is_transmitted(client: Client, override: dict[str, int], why: str) -> None:
+    client.simulation.v.autopilot.rc.channels[:8] = 1500
+    client.send("RC_CHANNELS_OVERRIDE", target_system=1, target_component=1, **override)
+    client.delay(0.5)
+    client.simulation.fail("rc:10/stuck")
+    client.delay(1.0)
+    (text,) = told(client)
+    assert (f"never acted: {why}" in text) if why else ("acted from" in text)
+
+
+def test_who_begins_to_transmit_is_heard_within_a_tenth_of_a_second(client: Client) -> None:
+    client.simulation.v.autopilot.rc.channels[:8] = 1500
+    client.simulation.fail("rc:10/stuck")
+    client.delay(1.0)
+    client.simulation.v.autopilot.rc.channels[9] = 1500
+    begins = client.now
+    client.delay(1.0)
+    history = client.simulation.bridge.get(FaultService).keep_history()
+    history.finish(client.simulation.time_us)
+    ((begin, _),) = history.faults[0].spans
+    assert 0.0 <= begin * 1e-6 - begins <= 0.11
