@@ -9,5 +9,5 @@ from ..deprecation import warn
 from .properties import body, ground_vehicle, multicopter
 
 warn("sitl.vehicles.figures", since="0.2", removed_in="0.4", instead="sitl.vehicles.properties")
-for _module in (body, multicopter, ground_vehicle):
-    sys.modules[_module.__name__.replace("properties", "figures")] = _module
+for _name, _module in {"body": body, "copter": multicopter, "rover": ground_vehicle}.items():
+    sys.modules[f"{__name__}.{_name}"] = _module

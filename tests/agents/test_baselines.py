@@ -12,7 +12,7 @@ from sitl.agents import baselines, learnt, recipes
 from sitl.agents.rollout import rollout
 from sitl.envs import ids
 
-LIMITED = {"copter-trajectory-discrete": "which learns nothing more in the second half"}
+LIMITED = {"copter-trajectory-discrete": "what limits it is its table of actions"}
 """Policies that solve fewer than nine of ten episodes -> what limits them, as the page says it."""
 
 

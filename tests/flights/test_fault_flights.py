@@ -481,8 +481,11 @@ def test_stuck_motors(fly: Fly) -> None:
 
 
 def test_slow_motors(fly: Fly) -> None:
-    """Rotors follow late: with 0.3 s it wobbles, 0.5 s is too much. A change of properties does not end that."""
-    copter = fly()
+    """Rotors follow late: with 0.3 s it wobbles, 0.5 s is too much. A change of properties does not end that.
+
+    How much it wobbles at first hangs on how still it was (2 to 9 times the calm of seeds 0 to 3).
+    """
+    copter = fly(seed=1)
     derived = copter.simulation.v.physics.derived
     before, airframe = bytes(derived._bytes), copter.simulation.v.physics.airframe
 

@@ -101,14 +101,17 @@ def test_a_silent_sensor_is_replaced_by_the_other_imu_s(core: Core, mask: str, b
 
 
 def test_rotors_shake_the_imus(core: Core) -> None:
-    """With an amplitude of 1 m/s^2 and 100 turns a second; the real one's levels are 0.8 to 1.1. It flies on."""
+    """With an amplitude of 1 m/s^2 and 100 turns a second; the real one's levels are 0.8 to 1.1. It flies on.
+
+    Four rotors beat: a level by itself is 1.0 to 1.7.
+    """
     p = loiter(core, SIM_ACC1_RND=0.5, SIM_ACC2_RND=0.5, SIM_VIB_MOT_MULT=2.0)
-    found = {}
-    for hz in (0.0, 100.0):
+    found: dict[float, list[float]] = {0.0: [], 100.0: []}
+    for hz in (0.0, *[100.0] * 6):
         p.set_parameter("SIM_VIB_MOT_MAX", hz)
         p.sticks(4.0)
-        found[hz] = vibration_levels(p.ap.vibration).z
-    assert found[0.0] < 0.1 and found[100.0] == approx(2.0 * math.sqrt(0.5), abs=0.3)
+        found[hz].append(vibration_levels(p.ap.vibration).z)
+    assert max(found[0.0]) < 0.1 and sum(found[100.0]) / 6 == approx(2.0 * math.sqrt(0.5), abs=0.3)
     assert abs(p.height - 15.0) < 0.5 and p.mode == LOITER
     assert p.ap.ekf.imu == 0
 
