@@ -20,6 +20,7 @@ from sitl.physics.native.copter import step as copter_step
 from sitl.physics.native.rover import init as rover_init
 from sitl.physics.native.rover import state as rover_state
 from sitl.physics.native.rover import step as rover_step
+from sitl.vehicle.kinds import KINDS
 
 
 @pytest.fixture
@@ -81,10 +82,18 @@ class Rig:
         for _ in range(ticks):
             self._step({0: self.v}, 0)
 
-    def compiled(self) -> Any:
-        """The compiled step, ``(address, count, index)``."""
-        name = self._step.__module__.removeprefix("sitl.") + ".step"
-        return compiler.load_unit(UNITS[name], f"{__name__}.{self._record.__name__}")
+    def step_compiled(self) -> None:
+        """One tick by the unit of whole vehicles, which need not be compiled for the rig: what they have in common goes
+        there and back."""
+        kind = KINDS[self.airframe.kind]
+        path = f"{kind.record.__module__}.{kind.record.__qualname__}"
+        unit = compiler.load_unit(UNITS[self._step.__module__.removeprefix("sitl.") + ".step"], path)
+        whole = kind.record.fleet(1)
+        for name in self._record.fields:
+            whole[name] = self.fleet[name]
+        unit(whole.ctypes.data, 1, 0)
+        for name in self._record.fields:
+            self.fleet[name] = whole[name]
 
     def command(self, *controls: float) -> None:
         """Actuator controls: of each rotor or of all, of a rover steering and throttle (or left and right)."""

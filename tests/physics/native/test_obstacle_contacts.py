@@ -234,7 +234,6 @@ def test_without_a_world_nothing_of_it_moves(rig):
 @pytest.mark.parametrize("frame", ["erle_copter", "erle_rover"])
 def test_compiled_and_plain_python_give_the_same_bits_at_walls(rig, frame):
     plain, compiled = rig(frame, seed=3), rig(frame, seed=3)
-    unit = compiled.compiled()
     for r in (plain, compiled):
         if frame == "erle_copter":
             r.fly(0.6)
@@ -246,7 +245,7 @@ def test_compiled_and_plain_python_give_the_same_bits_at_walls(rig, frame):
         for r in (plain, compiled):
             r.command(*((0.55, 0.56, 0.54, 0.55) if frame == "erle_copter" else (0.4, 0.9)))
         plain.step()
-        unit(compiled.fleet.ctypes.data, 1, 0)
+        compiled.step_compiled()
         assert records.first_difference(plain.fleet[0], compiled.fleet[0]) is None, k
     assert plain.p.obstacles.hit_count >= 1
 

@@ -143,13 +143,12 @@ def test_ardupilots_battery_gives_50_a_at_full_throttle(rig):
 @pytest.mark.parametrize("frame", ["erle_rover", "ardupilot_rover", "skid_rover"])
 def test_compiled_and_plain_python_drive_the_same_bits(rig, frame):
     plain, compiled = rig(frame, gps_start=0.01, grip=0.3), rig(frame, gps_start=0.01, grip=0.3)
-    unit = compiled.compiled()
     for k, (first, second) in enumerate(np.random.default_rng(1).uniform(-1.0, 1.0, (200, 2))):
         for r in (plain, compiled):
             if k % 20 == 0:
                 r.command(first, second)
         plain.step()
-        unit(compiled.fleet.ctypes.data, 1, 0)
+        compiled.step_compiled()
         assert records.first_difference(plain.fleet[0], compiled.fleet[0]) is None
     assert plain.v.sensors.gps_count > 0
     assert plain.p.wheels.forward != 0.0
