@@ -65,14 +65,17 @@ def test_an_axis_answers_its_chirp_and_the_others_stay_still(
     assert (found[others] < quiet[others]).all(), found
 
 
-@pytest.mark.parametrize(("axis", "column", "peak"), [(14, 0, 42.3), (17, 1, 43.2), (18, 0, 69.1)])
-def test_the_axes_of_the_position_lean_it(core: Core, axis: int, column: int, peak: float) -> None:
+@pytest.mark.parametrize(
+    ("axis", "column", "peak", "yaw"), [(14, 0, 42.3, 3.5), (17, 1, 43.2, 3.5), (18, 0, 69.1, 2.5)]
+)
+def test_the_axes_of_the_position_lean_it(core: Core, axis: int, column: int, peak: float, yaw: float) -> None:
+    """``yaw``: the heading is learnt from what leans it, too; 3.0, 2.4 and 0.5 deg/s."""
     p = flying(core, axis, 1.0, LOITER)
     assert p.set_mode(SYSTEMID)
     p.fly(2.9)
     found = size(answer(p, 2.0))
     assert found[column] == pytest.approx(peak, rel=0.25)
-    assert found[1 - column] < 2.5 and found[2] < 0.08 * peak, "its heading is learnt from what leans it, too"
+    assert found[1 - column] < 2.5 and found[2] < yaw
     p.fly(TOTAL)
     assert p.said("SystemID Finished")
     assert abs(p.height - 20.0) < 1.0
