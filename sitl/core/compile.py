@@ -111,8 +111,7 @@ def unit_identity(unit: Unit, path: str) -> str:
     """Hash of the sources of the unit for the record type at ``path``; the same on every machine."""
     key = (unit.name, path)
     if key not in _identities:
-        record = record_class(path)
-        _identities[key] = identity(unit, f"{record.layout()} {path} {unit.inline}", (record,))
+        _identities[key] = identity(unit, f"{path} {unit.inline}", (record_class(path),))
     return _identities[key]
 
 

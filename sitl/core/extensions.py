@@ -17,6 +17,9 @@ from ..errors import SitlError
 from .records import Record
 
 R = TypeVar("R", bound=Record)
+SPARE = 256
+"""Bytes that a record has for parts of other packages: while they suffice, a part moves nothing, and only units that
+mention it are compiled again."""
 
 
 class ExtensionError(SitlError, ValueError):
@@ -67,7 +70,8 @@ class Extensions:
                 yield key, reference, self._load(reference)
 
     def join(self, owner: str, record: type[R], base: type) -> type[R]:
-        """``record`` of ``owner`` with its parts of other packages as fields behind its own, by their keys.
+        """``record`` of ``owner`` with its parts of other packages as fields behind its own, by their keys, and with
+        memory for such parts (``SPARE``) where there are none.
 
         Args:
             owner: whose parts.
@@ -84,9 +88,10 @@ class Extensions:
             if key in record.fields or key in found:
                 raise ExtensionError(f"{self.noun} {reference}: the {owner} has a {self.noun} {key} already")
             found[key] = part
-        if not found:
-            return record
-        members = {"__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__}
+        members = {
+            "__annotations__": found, "__module__": record.__module__, "__doc__": record.__doc__,
+            "_least": record.dtype.itemsize + SPARE,
+        }  # fmt: skip
         return type(record.__name__, (record,), members)
 
     def _load(self, reference: str) -> object:

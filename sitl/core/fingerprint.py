@@ -107,6 +107,17 @@ def call_of(name: str, unit: Unit) -> str:
     return f"{name} is {unit.symbol} of {unit.integers} integers"
 
 
+def mentioned(code: types.CodeType) -> set[str]:
+    """Names that code mentions, and texts, which may be those of a ``getattr``: it uses no field of another name."""
+    found = set(code.co_names)
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            found |= mentioned(constant)
+        elif isinstance(constant, str):
+            found.add(constant)
+    return found
+
+
 def is_record(value: Any) -> TypeGuard[type[Record]]:
     """Whether what a law uses (``items``) is the class of a record, and no function."""
     return isinstance(value, type)
@@ -138,7 +149,7 @@ class Reached:
         if id(function) in self._seen:
             return
         self._seen.add(id(function))
-        self._note_names(function.__code__)
+        self.names |= mentioned(function.__code__)
         for item in items(function, _bytecode):
             if isinstance(item, str):
                 self.lines.append(item)
@@ -148,14 +159,6 @@ class Reached:
                 self.lines.append(call_of(item[0], self._units[id(item[1])]))
             else:
                 self._walk(item[1])
-
-    def _note_names(self, code: types.CodeType) -> None:
-        self.names.update(code.co_names)
-        for constant in code.co_consts:
-            if isinstance(constant, types.CodeType):
-                self._note_names(constant)
-            elif isinstance(constant, str):  # of a getattr
-                self.names.add(constant)
 
     def layouts(self, records: Iterable[type[Record]]) -> Iterator[str]:
         """Of these records, and of those that are made of memory, the fields that are mentioned."""

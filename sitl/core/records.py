@@ -249,15 +249,16 @@ _NARROW, _WIDE = 32, 64
 """Records that are not small have a multiple of so many bytes; of more than one of these, a multiple of so many."""
 
 
-def _padded(close: np.dtype[Any]) -> np.dtype[Any]:
-    """The type with unused memory at its end."""
-    step = _NARROW if close.itemsize <= _NARROW else _WIDE
+def _padded(close: np.dtype[Any], least: int) -> np.dtype[Any]:
+    """The type with unused memory at its end: of ``least`` bytes or more."""
+    size = max(close.itemsize, least)
+    step = _NARROW if size <= _NARROW else _WIDE
     fields: Any = close.fields
     described: Any = {
         "names": close.names,
         "formats": [fields[name][0] for name in close.names or ()],
         "offsets": [fields[name][1] for name in close.names or ()],
-        "itemsize": -(-close.itemsize // step) * step,
+        "itemsize": -(-size // step) * step,
     }
     made: np.dtype[Any] = np.dtype(described, align=True)
     return made
@@ -288,6 +289,8 @@ class Record(metaclass=_RecordMeta):
     _small: ClassVar[int] = 32
     """Records of no more bytes have no unused memory at their end. The others mostly have some, so that a new field
     there moves no other record, and units that do not mention it are not compiled again."""
+    _least: ClassVar[int] = 0
+    """Bytes that it has at least."""
     _bytes: Any
     _f8: Any
     _i8: Any
@@ -314,7 +317,7 @@ class Record(metaclass=_RecordMeta):
             raise TypeError(f"{cls.__name__}: fields {taken} are attributes of records themselves; choose other names")
         close = np.dtype([(f.name, f.numpy) for f in declared], align=True)
         offsets: Any = close.fields or {}
-        cls.dtype = close if close.itemsize <= cls._small else _padded(close)
+        cls.dtype = close if max(close.itemsize, cls._least) <= cls._small else _padded(close, cls._least)
         cls.fields = {f.name: replace(f, offset=offsets[f.name][1]) for f in declared}
         own_laws = {name: p.fget for name, p in vars(cls).items() if isinstance(p, property)}
         cls.properties = cls.properties | own_laws

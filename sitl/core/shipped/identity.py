@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any
 
-from ..fingerprint import borders, call_of, is_record, items
+from ..fingerprint import borders, call_of, is_record, items, mentioned
 from ..kernels import Unit
 from ..numba_tuning import TRUST, law_options
 from ..records import Record
@@ -29,13 +29,14 @@ class _Law:
         self.functions: list[tuple[str, Any]] = []
         self.properties: list[Any] = []
         """Laws of properties that it may read: of any record that has one of that name."""
-        self.records: list[type[Record]] = []
+        self.records: list[tuple[str, type[Record]]] = []
+        """Those that it makes of memory, by its names for them."""
+        self.names = mentioned(function.__code__)
         for item in items(function, source_of, constant_text):
             if isinstance(item, str):
                 own.append(item)
             elif is_record(item[1]):
-                self.records.append(item[1])
-                own.append(f"{item[0]} of {item[1].layout()}")
+                self.records.append(item)
             elif item[0]:
                 self.functions.append(item)
             else:
@@ -54,10 +55,14 @@ def identity(unit: Unit, made_by: str, records: Iterable[type[Record]]) -> str:
     Args:
         unit: the unit.
         made_by: what it depends on besides the functions that it reaches.
-        records: classes of the records that it is called with.
+        records: classes of the records that it is called with. Of them, and of those that laws make of memory, counts
+            where the fields lie that some law mentions, and no other field.
     """
+    records = tuple(records)
     others = borders(unit)
     found: set[str] = set()
+    names: set[str] = set()
+    made: set[tuple[str, type[Record]]] = set()
     seen: set[int] = set()
     known: set[Any] = set()  # laws of properties of the records that it reaches: what else is loaded does not count
     possible: list[Any] = []
@@ -73,18 +78,21 @@ def identity(unit: Unit, made_by: str, records: Iterable[type[Record]]) -> str:
         if law is None:
             law = _laws[id(function)] = _Law(function)
         found.add(law.digest)
+        names |= law.names
+        made.update(law.records)
         for name, used in law.functions:
             if id(used) in others:
                 found.add(call_of(name, others[id(used)]))
             else:
                 waiting.append(used)
         possible += law.properties
-        for record in law.records:
+        for _, record in law.records:
             known |= _properties(record)
         if not waiting:
             waiting = [law for law in possible if law in known]
             possible = [law for law in possible if law not in known]
-    return _hash([_OPTIONS, made_by, *sorted(found)])
+    found.update(f"{name} of {record.layout(names)}" for name, record in made)
+    return _hash([_OPTIONS, made_by, *(record.layout(names) for record in records), *sorted(found)])
 
 
 @cache

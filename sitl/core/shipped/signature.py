@@ -105,7 +105,7 @@ def records_of(law: Callable[..., Any]) -> Iterator[type[Record]]:
 
 
 def described(law: Callable[..., Any]) -> str:
-    """All that the machine code of a kernel's entry depends on besides its law, as text."""
+    """What the machine code of a kernel's entry depends on besides its law and the layouts of records, as text."""
     arguments, result = hints_of(law)
     found = [_described(hint) for hint in arguments]
     return f"({', '.join(found)}) -> {'none' if result is type(None) else _described(result)}"
@@ -113,7 +113,7 @@ def described(law: Callable[..., Any]) -> str:
 
 def _described(hint: Any) -> str:
     if get_origin(hint) is Records:
-        return f"records {get_args(hint)[0].layout()}"
+        return f"records {get_args(hint)[0].__qualname__}"
     array = _array(hint)
     if array is not None:
         return f"{array.dtype.str}{array.axes}{'A' if array.any_order else 'C'}"

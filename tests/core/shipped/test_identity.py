@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import inspect
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 import sitl
 from sitl.cli.cache import KERNEL_MODULES
@@ -27,6 +30,29 @@ from sitl.core.compile import unit_identity
 from sitl.core.kernels import UNITS
 print(kernel_identity(KERNELS[name]) if name in KERNELS else unit_identity(UNITS[name], "sitl.vehicle.copter.Copter"))
 """
+ALL = """
+import importlib, json, sys
+from sitl.core.compile import unit_folder, unit_identity
+from sitl.core.fingerprint import reached
+from sitl.vehicle.kinds import KINDS
+
+kind = KINDS[sys.argv[1]]
+path, units = kind.record_path, reached(kind.advance)
+memory = kind.record.dtype.itemsize
+print(json.dumps([memory, {unit.name: [unit_identity(unit, path), unit_folder(unit, path).name] for unit in units}]))
+"""
+PARTS = """
+from sitl.autopilot.params.parameter import ParameterGroup, param
+from sitl.core.records import Floats, Record
+
+class Group(ParameterGroup):
+    WANTED: float = param(2.0, 0.0, 10.0, "1/s", "Gain of nothing")
+    RATES: Floats = param(1.0, 0.0, 10.0, "1/s", "Rate {{n}} of nothing", count={count})
+
+class State(Record):
+    since: int
+    wanted: float
+"""
 IMPORT = """
 import importlib, sys
 import sitl
@@ -37,8 +63,9 @@ print(sorted({"numba", "llvmlite"} & set(sys.modules)))
 """
 
 
-def said(program: str, *arguments: str, seed: str = "0") -> str:
-    environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(sitl.__file__).parents[1])}
+def said(program: str, *arguments: str, seed: str = "0", beside: Path | None = None, **variables: str) -> str:
+    paths = [str(Path(sitl.__file__).parents[1]), *([str(beside)] if beside else ())]
+    environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(paths), **variables}
     done = subprocess.run(
         [sys.executable, "-c", program, *arguments], env=environment, capture_output=True, text=True, check=True
     )
@@ -57,6 +84,21 @@ def test_what_else_is_loaded_does_not_matter() -> None:
         alone = said(ASK, name)
         beside = said(ASK, name, "sitl.vehicle.rover", "sitl.bridge.rover.core", "sitl.vehicle.copter", seed="1")
         assert alone == beside, name
+
+
+@pytest.mark.parametrize("kind", ["copter", "rover"])
+def test_parameters_and_states_of_other_packages_compile_only_what_uses_them(tmp_path: Path, kind: str) -> None:
+    """There is memory for them; without it all that lies behind them would move, and the whole core be compiled."""
+    memory, plain = json.loads(said(ALL, kind))
+    for count, is_moved in ((12, False), (60, True)):
+        (tmp_path / f"parts_{count}.py").write_text(PARTS.format(count=count))
+        parts = {
+            "SITL_PARAMETERS": f"{kind}.TOY=parts_{count}:Group", "SITL_MODE_STATES": f"{kind}.toy=parts_{count}:State",
+        }  # fmt: skip
+        more, others = json.loads(said(ALL, kind, beside=tmp_path, **parts))
+        assert others.keys() == plain.keys() and len(plain) > 10
+        assert (more > memory) is is_moved
+        assert [name for name in plain if plain[name] != others[name]] == (list(plain) if is_moved else [])
 
 
 def test_the_text_of_a_law_is_that_of_its_function() -> None:
