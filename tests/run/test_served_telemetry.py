@@ -88,7 +88,8 @@ def test_one_who_does_not_read_misses_telemetry_and_holds_up_nobody(core: Core) 
     for _ in range(400):
         simulation.advance(20.0)
         quick.read()
-    assert without_gap(quick.frames()) and count_of(quick.frames(), "ATTITUDE") == 4 * 8000
+    frames = quick.frames()
+    assert without_gap(frames) and count_of(frames, "ATTITUDE") == 4 * 8000
     for _ in range(50):
         slow.read()
         simulation.bridge.flush()
