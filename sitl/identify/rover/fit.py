@@ -29,6 +29,8 @@ _GAIN = 0.002
 """Part of the squares that a limit must explain to be in the model."""
 _WORSE = 1.1
 """With the other properties as they were, a limit may first be worse by this factor."""
+_SEARCHES, _SETTLED = 8, 0.99
+"""So many searches in a row, as long as each leaves no more than this part of the squares."""
 _SERVO_S = (0.05, 0.1, 0.2, 0.4)
 _SHARES = (0.9, 0.75, 0.6, 0.45, 0.3)
 _LAGS_S = (0.05, 0.2, 0.6, 2.0)
@@ -56,9 +58,10 @@ class DriveFit:
         self._find_onsets(p)
         p = self._search(p)
         self._reweigh(p)
-        for limit in LIMITS:
-            p = self._try(limit, p)
-        p = self._search(p)
+        for limit in (*LIMITS, *LIMITS):  # once more: one may show only when another is in the model
+            if limit not in self.names:
+                p = self._try(limit, p)
+        p = self._settle(p)
         self._reweigh(p)
         q = self._with_onsets(p)
         low, high = self._limits()
@@ -179,6 +182,15 @@ class DriveFit:
         )
         self._set_onsets(found.x)
         return np.asarray(found.x[: len(self.names)])
+
+    def _settle(self, p: Array) -> Array:
+        """Search on until that gains little: else the last bits of sums decide where a search of few steps ends."""
+        for _ in range(_SEARCHES):
+            before = self._cost(p)
+            p = self._search(p)
+            if self._cost(p) > _SETTLED * before:
+                break
+        return p
 
     def _reweigh(self, p: Array) -> None:
         spread = [1.4826 * float(np.median(abs(part - np.median(part)))) for part in self._parts(p)]

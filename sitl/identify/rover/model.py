@@ -19,6 +19,10 @@ from .stretches import Stretches
 BASES = {True: "skid_rover", False: "erle_rover"}
 """Whether it skids -> the airframe that lends what no property shows."""
 _NO_SLIP = 1000.0
+_GYRATION = 0.2
+"""Square of a rover's radius of gyration about the vertical by that of its wheelbase, or of its track where it skids: it
+counts only on slippery ground, where tyres turn the vehicle slowly. The package's airframes have 0.11 to 0.26.
+"""
 
 Array = np.ndarray[Any, Any]
 
@@ -96,8 +100,11 @@ class Model:
         if self.skids:
             first = np.where(first < 0.0, aft, forth) * first
         record = base.copy()
-        for name, value in self.properties().items():
+        properties = self.properties()
+        for name, value in properties.items():
             record[name] = value
+        across = properties["track"] if self.skids else properties["wheelbase"]
+        record["inertia"][2] = _GYRATION * across * across  # of one kilogram
         return drive(record, first, second, data.start_speed, data.start_yaw_rate)
 
 
