@@ -31,8 +31,8 @@ def squares(params: dict[str, float]) -> tuple[list[tuple[float, float]], Simula
     if "VISO_TYPE" in params:
         Odometry(client, position_noise=0.01, velocity_noise=0.02).start()
     client.delay(26)
-    place = client.simulation.v.physics.place
-    client.send("SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000)
+    origin = client.simulation.v.physics.origin
+    client.send("SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=origin.lat, longitude=origin.lon, altitude=584_000)
     client.delay(1)
     client.set_mode("GUIDED")
     client.arm()

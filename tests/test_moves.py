@@ -95,7 +95,7 @@ def turn(v: Any, angle: float) -> Any:
 
 def error(v: Any) -> Any:
     """What the estimate of the position is wrong by, NED [m]."""
-    place, e, pos = v.physics.place, v.autopilot.estimate, v.physics.body.pos
+    place, e, pos = v.physics.origin, v.autopilot.estimate, v.physics.body.pos
     north, east = offset_ne(place.lat, place.lon, e.origin_lat, e.origin_lon)
     return np.array([north + e.pos.x - pos.x, east + e.pos.y - pos.y, e.pos.z - pos.z])
 
@@ -249,7 +249,7 @@ def test_the_first_telemetry_tells_of_the_new_place(fleet: Fleet) -> None:
     station, v = Endpoint(Link()), fleet.view(0)
     fleet.advance(0.1)
     said = {m.name: m.fields for m in station.receive()}
-    pos, place, wrong = v.physics.body.pos, v.physics.place, error(v)
+    pos, place, wrong = v.physics.body.pos, v.physics.origin, error(v)
     everywhere = said["GLOBAL_POSITION_INT"]
     north, east = offset_ne(place.lat, place.lon, everywhere.lat, everywhere.lon)
     assert math.dist((north, east), (pos.x + wrong[0], pos.y + wrong[1])) < 0.05
@@ -355,13 +355,13 @@ def test_what_autotune_and_flowhold_hold_goes_along(hovering: Snapshot) -> None:
     fleet.put(0, hovering)
     v = fleet.view(0)
     t, hold, est = v.autopilot.modes.autotune, v.autopilot.modes.flowhold, v.autopilot.estimate
-    t.place, t.heading = Vec2(est.pos.x + 3.0, est.pos.y), est.yaw + 0.5
+    t.hold_pos, t.heading = Vec2(est.pos.x + 3.0, est.pos.y), est.yaw + 0.5
     t.axis, t.backwards, t.start_angle = YAW, True, -est.yaw - 0.25
     hold.against_wind = Vec2(0.1, 0.0)
     angle = 1.5 - heading(v.physics.body.q)
     fleet.move(0, Move(300.0, -200.0, heading=1.5))
     c, s = math.cos(angle), math.sin(angle)
-    away = t.place.x - est.pos.x, t.place.y - est.pos.y
+    away = t.hold_pos.x - est.pos.x, t.hold_pos.y - est.pos.y
     np.testing.assert_allclose(away, (3.0 * c, 3.0 * s), atol=1e-6)
     assert math.remainder(t.heading - est.yaw - 0.5, math.tau) == pytest.approx(0.0, abs=1e-9)
     assert math.remainder(t.start_angle + est.yaw + 0.25, math.tau) == pytest.approx(0.0, abs=1e-9)

@@ -69,13 +69,16 @@ def is_kept(name: str) -> bool:
 
 
 def fly(name: str) -> tuple[float, dict[str, Any]]:
-    """Seconds of wall time, and the digests of one flight; with "error" when it cannot be flown."""
+    """Seconds of wall time, and the digests of one flight; with "error" when it cannot be flown, and "missing" when it
+    needs what is not installed here."""
     start = time.perf_counter()
     try:
         digests: dict[str, Any] = flights()[name]().result()
     except Exception as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
         digests = {"error": f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"}
+        if type(error).__name__ == "MissingExtra":  # of whichever tree is flown
+            digests["missing"] = str(error)
     return time.perf_counter() - start, digests
 
 
@@ -109,8 +112,11 @@ def record(path: Path, names: list[str], jobs: int) -> int:
 
 
 def check(path: Path, names: list[str], jobs: int) -> list[str]:
-    """Fly; what differs from the digests that the repository keeps, in words."""
+    """Fly; what differs from the digests that the repository keeps, in words. Flights that need what is not installed
+    here are left out, and named."""
     flown = fly_all(with_kept_digests(names), jobs)
+    for name in [name for name, each in flown.items() if "missing" in each]:
+        print(f"left out: {name}: {flown.pop(name)['missing']}", file=sys.stderr)
     found = [f"{name}: it cannot be flown: {each['error']}" for name, each in flown.items() if "error" in each]
     now = {name: kept.keep(each) for name, each in flown.items() if "error" not in each}
     found += kept.differences(kept.load(path), now)

@@ -49,7 +49,7 @@ def move_nav(nav: Nav, d: Displacement) -> None:
     move_leg(nav.next, d)
     nav.pos, nav.vel, nav.acc = moved(d, nav.pos), faster(d, nav.vel), turned(d, nav.acc)
     for k in range(nav.detour.left):
-        set_position(nav.detour, k, moved(d, vector_at(nav.detour.places, 3 * k)))
+        set_position(nav.detour, k, moved(d, vector_at(nav.detour.waypoints, 3 * k)))
     nav.detour.bent_target = moved(d, nav.detour.bent_target)
     nav.request, nav.request_next = moved(d, nav.request), moved(d, nav.request_next)
 

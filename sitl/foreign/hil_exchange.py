@@ -28,7 +28,7 @@ from ..core.records import Floats, Ints, Record, array
 from ..core.system_call import call_system
 from ..core.vectors import Vec3
 from ..physics.carried import carried
-from ..physics.native.records import Body, Obstacles, Place
+from ..physics.native.records import Body, Obstacles, Origin
 
 INBOX_BYTES = 2048
 """Bytes that are read at once."""
@@ -83,7 +83,7 @@ class HilExchange(Record):
     actuators: int
     sensors: int
     body: int
-    place: int
+    origin: int
     obstacles: int
     lowest: float  # controls of rotors that stand and that turn fastest
     highest: float
@@ -121,7 +121,7 @@ class HilExchange(Record):
 
 class _Physics(NamedTuple):
     body: Body
-    place: Place
+    origin: Origin
 
 
 class _Vehicle(NamedTuple):
@@ -177,7 +177,7 @@ def write_truth(x: HilExchange, at: int, time_us: int) -> int:
     for k in range(PAYLOAD_MAX):
         payload[k] = 0
     m = record_at(HilState, at + HEADER)
-    truth = carried(_Vehicle(_Physics(record_at(Body, x.body), record_at(Place, x.place))))  # type: ignore[arg-type]
+    truth = carried(_Vehicle(_Physics(record_at(Body, x.body), record_at(Origin, x.origin))))  # type: ignore[arg-type]
     north, east, down = truth.velocity
     speed = uint16(math.sqrt(north * north + east * east + down * down))
     m.time_usec = time_us

@@ -53,9 +53,9 @@ class HilTicks:
         self.exchange = x = HilExchange.of(self._memory, 0)
         fleet = vehicle.fleet
         x.records, x.vehicles, x.index = fleet.ctypes.data, len(fleet), vehicle.index
-        x.clock, x.actuators, x.sensors, x.body, x.place, x.obstacles = addresses(
+        x.clock, x.actuators, x.sensors, x.body, x.origin, x.obstacles = addresses(
             fleet, vehicle.index,
-            "time_us", "actuators", "sensors", "physics.body", "physics.place", "physics.obstacles",
+            "time_us", "actuators", "sensors", "physics.body", "physics.origin", "physics.obstacles",
         )  # fmt: skip
         x.lowest, x.highest = end.range
         at = fleet.ctypes.data + vehicle.index * fleet.dtype.itemsize

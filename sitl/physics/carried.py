@@ -69,15 +69,15 @@ def _long(value: float) -> int:
 @law
 def carried(v: Vehicle[Physics]) -> Carried:
     """The truth of a vehicle as the message carries it."""
-    b, place = v.physics.body, v.physics.place
+    b, origin = v.physics.body, v.physics.origin
     q, rates, pos, vel, force = b.q, b.rates, b.pos, b.vel, b.specific_force
-    at = add_offset(place.lat, place.lon, pos.x, pos.y)
+    at = add_offset(origin.lat, origin.lon, pos.x, pos.y)
     return Carried(
         (_single(q.w), _single(q.x), _single(q.y), _single(q.z)),
         (_single(rates.x), _single(rates.y), _single(rates.z)),
         _long(at.lat),
         _long(at.lon),
-        _long(1000.0 * (place.alt - pos.z)),
+        _long(1000.0 * (origin.alt - pos.z)),
         (_short(100.0 * vel.x), _short(100.0 * vel.y), _short(100.0 * vel.z)),
         (_short(force.x / MILLIG), _short(force.y / MILLIG), _short(force.z / MILLIG)),
     )

@@ -31,9 +31,9 @@ _ALL_WELL = 1 | 2 | 4 | 8 | 16 | 32 | 256 | 512
 @law
 def observe(v: Vehicle) -> None:
     """Copy attitude, rates, velocity, position and acceleration of the body into the autopilot's estimate."""
-    body, place, e = v.physics.body, v.physics.place, v.autopilot.estimate
+    body, origin, e = v.physics.body, v.physics.origin, v.autopilot.estimate
     e.rates, e.vel, e.pos, e.acc_ned, e.q = body.rates, body.vel, body.pos, body.acc_ned, body.q
-    e.origin_lat, e.origin_lon, e.origin_alt = place.lat, place.lon, place.alt
+    e.origin_lat, e.origin_lon, e.origin_alt = origin.lat, origin.lon, origin.alt
     e.origin_set = True
     e.attitude_ok = True
     e.position_ok = True

@@ -12,7 +12,7 @@ from ..core.algebra import dot, norm, rotate_inverse, with_down
 from ..core.geodesy import offset_ne
 from ..core.kernels import law
 from ..core.vectors import Vec3
-from ..physics.native.records import Place
+from ..physics.native.records import Origin
 from .record import Vehicle
 
 BY_MESSAGE, WITHOUT_DISTANCE, WITH_DISTANCE = 1, 2, 4
@@ -24,9 +24,9 @@ LEAST = 0.01
 
 
 @law
-def position_of(p: LandingBeacon, place: Place) -> Vec3:
+def position_of(p: LandingBeacon, origin: Origin) -> Vec3:
     """The beacon, NED from where the vehicle was powered on [m]."""
-    return with_down(offset_ne(place.lat, place.lon, p.LAT * 1e7, p.LON * 1e7), -p.HEIGHT)
+    return with_down(offset_ne(origin.lat, origin.lon, p.LAT * 1e7, p.LON * 1e7), -p.HEIGHT)
 
 
 @law
@@ -60,7 +60,7 @@ def look(v: Vehicle) -> None:
         return
     if v.time_us - t.line_us < 1e6 / max(p.RATE, 1.0):
         return
-    there = v.physics.body.pos - position_of(p, v.physics.place)
+    there = v.physics.body.pos - position_of(p, v.physics.origin)
     t.sees = is_seen(p, there)
     if t.sees:
         has_distance = kind == WITH_DISTANCE and (int(p.OPTIONS) & 1) != 0

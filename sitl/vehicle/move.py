@@ -24,7 +24,7 @@ from ..core.scalars import wrap_pi
 from ..core.vectors import Vec2, Vec3
 from ..physics.native.displaced_body import is_inside, move_physics, set_wind
 from ..physics.native.ranging import Ranging, list_around, look_again
-from ..physics.native.records import Place
+from ..physics.native.records import Origin
 from ..physics.native.tick import Clock
 from .record import Vehicle
 
@@ -87,13 +87,13 @@ def _nearest(x: float) -> int:
 
 
 @law
-def of_estimate(place: Place, e: Estimate, d: Displacement) -> Local:
+def of_estimate(ground: Origin, e: Estimate, d: Displacement) -> Local:
     """The displacement of the frame of an estimate: its origin goes along, on whole 1e-7 degrees."""
-    origin = offset_ne(place.lat, place.lon, e.origin_lat, e.origin_lon)
+    origin = offset_ne(ground.lat, ground.lon, e.origin_lat, e.origin_lon)
     to = moved_ne(d, origin)
-    found = add_offset(place.lat, place.lon, to.x, to.y)
+    found = add_offset(ground.lat, ground.lon, to.x, to.y)
     lat, lon = _nearest(found.lat), _nearest(found.lon)
-    left = to - offset_ne(place.lat, place.lon, lat, lon)
+    left = to - offset_ne(ground.lat, ground.lon, lat, lon)
     shift = Vec3(left.x, left.y, d.shift.z)
     return Local(lat, lon, Displacement(d.angle, d.cosine, d.sine, d.turn, shift, d.velocity))
 
@@ -107,7 +107,7 @@ def move_frame(v: Vehicle, d: Displacement) -> Displacement:
         return d
     if not e.origin_set:
         return displacement(d.angle, Vec3(0.0, 0.0, d.shift.z), d.velocity)
-    local = of_estimate(v.physics.place, e, d)
+    local = of_estimate(v.physics.origin, e, d)
     e.origin_lat, e.origin_lon = local.lat, local.lon
     if ap.second_lane.runs != 0:
         ap.second_lane.estimate.origin_lat, ap.second_lane.estimate.origin_lon = local.lat, local.lon

@@ -110,7 +110,7 @@ class AutopilotSource(RecordSource):
 
     def _origin(self) -> Vec3:
         """The estimator's origin in the scene [m]."""
-        estimate, ground = self._v.autopilot.estimate, self._v.physics.place
+        estimate, ground = self._v.autopilot.estimate, self._v.physics.origin
         if not estimate.origin_set:
             return self._stands
         flat = offset_ne(ground.lat, ground.lon, estimate.origin_lat, estimate.origin_lon)

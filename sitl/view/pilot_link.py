@@ -146,7 +146,7 @@ class Pilot:
             raise OptionError("it is not armed: arm it, or take off, before it can go anywhere")
         if self._mode != GUIDED:
             self.set_mode(GUIDED)
-        lat, lon = add_offset(v.physics.place.lat, v.physics.place.lon, north, east)
+        lat, lon = add_offset(v.physics.origin.lat, v.physics.origin.lon, north, east)
         self._send(
             "SET_POSITION_TARGET_GLOBAL_INT", coordinate_frame=MavFrame.GLOBAL_RELATIVE_ALT_INT,
             type_mask=POSITION_ONLY,

@@ -88,7 +88,7 @@ def driving(rover_bench: Bench) -> Bench:
     rover_bench.vehicle.locate()
     ap = rover_bench.vehicle.v.autopilot
     ap.estimate.pos, ap.modes.nav.target = (3.0, 4.0, 0.0), (3.0, 24.0, 0.0)
-    ap.modes.loiter.place, ap.modes.circle.target = (13.0, 4.0), (-7.0, 4.0)
+    ap.modes.loiter.hold_pos, ap.modes.circle.target = (13.0, 4.0), (-7.0, 4.0)
     ap.modes.nav.drive.crosstrack, ap.control.position.pos_target = -1.5, (8.0, 9.0)
     return rover_bench
 

@@ -80,7 +80,7 @@ def test_second_imu_and_other_compasses(bench: Bench) -> None:
 
 def test_the_truth(bench: Bench) -> None:
     v = bench.vehicle.v
-    body, place = v.physics.body, v.physics.place
+    body, place = v.physics.body, v.physics.origin
     place.lat, place.lon, place.alt = *HOME[:2], HOME[2]
     body.pos, body.vel, body.q = Vec3(100.0, 0.0, -20.0), Vec3(1.0, -2.0, 0.5), quat_about_down(0.5)
     m = get(bench, "SIM_STATE")

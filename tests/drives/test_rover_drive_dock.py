@@ -30,7 +30,7 @@ def docker(core: Core, aside: float = -2.0, **params: float) -> tuple[Driver, np
     d.set_parameter("SIM_PLD_LON", lon * 1e-7)
     d.set_parameter("SIM_PLD_ENABLE", 1)
     v = d.simulation.v
-    dock = np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.place))[:2]
+    dock = np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.origin))[:2]
     assert not d.set_mode(DOCK) and d.said("Dock: target not acquired")
     d.target(POSITION, x=dock[0] - 20.0, y=dock[1] + aside)
     assert d.fly(60.0, lambda: d.place[0] > dock[0] - 22.5)
@@ -122,7 +122,7 @@ def test_a_sensor_that_looks_back_docks_in_reverse(core: Core) -> None:
     d.target(POSITION, x=5.0, y=0.0)
     d.fly(12.0)
     v = d.simulation.v
-    dock = np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.place))[:2]
+    dock = np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.origin))[:2]
     assert d.set_mode(DOCK)
     d.fly(4.0)
     assert d.speed < -0.3

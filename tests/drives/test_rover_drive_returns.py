@@ -119,8 +119,8 @@ def test_loiter_drives_back(core: Core, frame: str, kind: int) -> None:
     d = Driver(core, frame, LOIT_TYPE=kind, LOIT_RADIUS=0.5).armed_in(rover.LOITER)
     d.fly(2.0)
     away = 6.0 * max(d.radius, d.cruise, 0.3)
-    place = d.ap.modes.loiter.place
-    d.ap.modes.loiter.place = (d.ap.estimate.pos.x - away, place.y)  # as if it stood so far ahead of it
+    place = d.ap.modes.loiter.hold_pos
+    d.ap.modes.loiter.hold_pos = (d.ap.estimate.pos.x - away, place.y)  # as if it stood so far ahead of it
     start = d.now
     d.fly(60.0 + 3.0 * away / d.cruise)
     nearest = away

@@ -31,7 +31,7 @@ def made(frame, **options):
 def error(robot, index=0):
     """Estimate minus truth: position, velocity, yaw, roll, pitch."""
     v = robot.view(index)
-    e, body, place = v.autopilot.estimate, v.physics.body, v.physics.place
+    e, body, place = v.autopilot.estimate, v.physics.body, v.physics.origin
     north, east = offset_ne(place.lat, place.lon, e.origin_lat, e.origin_lon)
     true = euler_of(body.q)
     angles = wrap_pi(e.euler.yaw - true.yaw), e.euler.roll - true.roll, e.euler.pitch - true.pitch

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
+from importlib.util import find_spec
 
 import gymnasium as gym
 import numpy as np
@@ -35,6 +36,8 @@ def episodes(env, seeds=range(5)):
 
 @pytest.mark.parametrize("options", [{}, {"begin": "boot"}, {"physics": "pybullet", "randomise": {}}])
 def test_a_second_environment_boots_nothing_and_sees_the_same(kept, monkeypatch, options):
+    if "physics" in options:
+        pytest.importorskip(options["physics"])
     first = episodes(gym.make(HOVER, **options))
     count = len(kept)
     again = gym.make(HOVER, **options)
@@ -83,6 +86,7 @@ def _made(frame, world, options):
 
 
 def test_origins_are_told_apart_by_all_that_a_start_depends_on():
+    engines = [name for name in ("pybullet", "jsbsim") if find_spec(name)]
     copter = vehicles.load("erle_copter")
     heavier = copter.changed(mass=1.3)
     iron = copter.changed(mag_offset=(1e-6, 0.0, 0.0))
@@ -97,7 +101,7 @@ def test_origins_are_told_apart_by_all_that_a_start_depends_on():
         origin(params={"WPNAV_SPEED": 300.0}),
         origin(params={"WPNAV_SPEED": 400.0}),
         origin(sensors="rtk"),
-        origin(physics="pybullet"),
+        *(origin(physics=engine) for engine in engines),
     ]
     for i, one in enumerate(found):
         assert [one == other for other in found] == [i == j for j in range(len(found))]

@@ -24,7 +24,7 @@ SET_SOURCES, DENIED = 42007, 2
 
 def give_origin(p: Aviator) -> None:
     """SET_GPS_GLOBAL_ORIGIN: where it stands."""
-    place = p.simulation.v.physics.place
+    place = p.simulation.v.physics.origin
     p.send("SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000)
     p.fly(1.0)
 

@@ -32,7 +32,7 @@ class Flight:
         self.v: Any = self.simulation.v
         self.odometry = Odometry(self.client, position_noise=0.02, velocity_noise=0.02).start()
         self.client.delay(boot)
-        place = self.v.physics.place
+        place = self.v.physics.origin
         if origin:
             self.client.send(
                 "SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000

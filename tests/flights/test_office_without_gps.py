@@ -24,7 +24,7 @@ def in_office(params: dict[str, float]) -> Client:
     if "VISO_TYPE" in params:
         Odometry(client, position_noise=0.01, velocity_noise=0.02).start()
     client.delay(26.0)
-    place = client.simulation.v.physics.place
+    place = client.simulation.v.physics.origin
     client.send("SET_GPS_GLOBAL_ORIGIN", target_system=1, latitude=place.lat, longitude=place.lon, altitude=584_000)
     client.delay(1.0)
     client.set_mode("GUIDED")

@@ -31,7 +31,7 @@ def beacon(p: Aviator, north: float, east: float) -> np.ndarray:
     p.set_parameter("SIM_PLD_LON", lon * 1e-7)
     p.set_parameter("SIM_PLD_ENABLE", 1)
     v = p.simulation.v
-    return np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.place))[:2]
+    return np.array(position_of(v.autopilot.params.SIM.PLD, v.physics.origin))[:2]
 
 
 def pilot(core: Core, **params: float) -> Aviator:

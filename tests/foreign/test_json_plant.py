@@ -248,7 +248,7 @@ def test_a_receiver_of_the_simulators_takes_the_place_of_ours():
 def test_the_autopilots_own_options_are_its_own_and_the_physics_are_refused():
     home = (1.0, 2.0, 3.0, 4.0)
     simulation = Simulation("erle_copter", physics="json:127.0.0.1:9", home=home, seed=5, estimator="truth")
-    assert (simulation.v.physics.place.lat, simulation.v.physics.place.alt) == (10_000_000, 3.0)
+    assert (simulation.v.physics.origin.lat, simulation.v.physics.origin.alt) == (10_000_000, 3.0)
     simulation.close()
     with pytest.raises(OptionError, match="world"):
         Simulation("erle_copter", physics="json:127.0.0.1:9", world="maze_erlerover")

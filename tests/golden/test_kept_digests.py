@@ -12,6 +12,7 @@ import pytest
 from benchmarks.digests import __main__ as command
 from benchmarks.digests import flights as scripts
 from benchmarks.digests import kept, tree
+from sitl.errors import MissingExtra
 from sitl.simulation import Core
 
 FILE = tree.root() / kept.FILE
@@ -69,6 +70,24 @@ def test_a_change_is_named_with_its_time_and_field(
     assert command.main(arguments) == 1
     said = capsys.readouterr().out
     assert f"{FLIGHT}: between 0 and 8 s: " in said and "rng.s" in said and "1 of 1 flights differ" in said
+
+
+def test_a_flight_that_needs_what_is_not_installed_is_left_out_and_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Fails:
+        def __init__(self, error: Exception) -> None:
+            self.error = error
+
+        def result(self) -> None:
+            raise self.error
+
+    missing, wrong = MissingExtra("it needs PettingZoo"), ValueError("it is wrong")
+    monkeypatch.setattr(command, "flights", lambda: {"a": lambda: Fails(missing), "b": lambda: Fails(wrong)})
+    (found,) = command.check(FILE, ["a", "b"], jobs=1)
+    assert found.startswith("b: it cannot be flown: ValueError: it is wrong")
+    printed = capsys.readouterr()
+    assert "left out: a: it needs PettingZoo" in printed.err and "1 of 1 flights differ" in printed.out
 
 
 def test_one_bit_of_one_field_is_a_difference_and_a_new_field_of_the_record_is_none() -> None:

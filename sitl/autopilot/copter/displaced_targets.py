@@ -65,7 +65,7 @@ def move_loiter(state: LoiterState, d: Displacement) -> None:
 @law
 def move_autotune(t: AutotuneState, d: Displacement) -> None:
     """The position and heading that AUTOTUNE holds, and the heading from which a twitch in yaw began."""
-    t.place, t.heading = moved_ne(d, t.place), turned_heading(d, t.heading)
+    t.hold_pos, t.heading = moved_ne(d, t.hold_pos), turned_heading(d, t.heading)
     if t.axis >= YAW:
         t.start_angle += -d.angle if t.backwards else d.angle
 

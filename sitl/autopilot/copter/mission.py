@@ -124,7 +124,7 @@ class CopterCommands(Commands[Vehicle]):
             nav.target = here.replace(z=_take_off_to(v, item)) if kind == kinds.TAKEOFF else here
         command.give(nav, kind, seq)
         nav.circle_running = False
-        nav.has_place = not item.no_location
+        nav.has_target = not item.no_location
         if kind in (kinds.WAYPOINT, kinds.LOITER_TIME):
             nav.delay = whole_seconds(item)
         elif kind == kinds.DELAY:

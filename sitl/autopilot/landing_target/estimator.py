@@ -66,8 +66,8 @@ def predict(t: LandingTarget, change: Vec2, accel_noise: float) -> None:
 @law
 def start(t: LandingTarget, est: Estimate) -> None:
     """Begin with a measurement of a target that stands."""
-    t.pos, t.vel = horizontal(t.place), -1.0 * horizontal(est.vel)
-    spread = Vec3(variance(t.place, est.rates), 0.0, SPEED_ERROR * SPEED_ERROR)
+    t.pos, t.vel = horizontal(t.measured_pos), -1.0 * horizontal(est.vel)
+    spread = Vec3(variance(t.measured_pos, est.rates), 0.0, SPEED_ERROR * SPEED_ERROR)
     set_row_vector(t.covariance, 0, spread)
     set_row_vector(t.covariance, 1, spread)
 
@@ -85,7 +85,7 @@ def gains(covariance: Floats, k: int, spread: float) -> Vec2:
 @law
 def fuse(t: LandingTarget, est: Estimate) -> bool:
     """Take in a measurement; False: it is an outlier."""
-    error, spread = horizontal(t.place) - t.pos, variance(t.place, est.rates)
+    error, spread = horizontal(t.measured_pos) - t.pos, variance(t.measured_pos, est.rates)
     north = error.x * error.x / (row_vector(t.covariance, 0).x + spread)
     east = error.y * error.y / (row_vector(t.covariance, 1).x + spread)
     if max(north, east) >= OUTLIER and t.outliers < OUTLIERS:
@@ -170,14 +170,14 @@ def update(
     if t.line_us != t.used_us:
         t.used_us = t.line_us
         if measure(t, est, height, p, orientation):
-            t.last_place, t.seen_from = t.place + est.pos, est.pos
+            t.last_pos, t.seen_from = t.measured_pos + est.pos, est.pos
             if not t.running:
                 t.running, t.since_us = True, time_us
                 t.update_us, t.outliers = time_us, 0
                 emit(events, time_us, LANDING_TARGET_DID, float(SAID_FOUND), 0.0)
                 start(t, est)
             elif is_raw:
-                t.pos, t.update_us = horizontal(t.place), time_us
+                t.pos, t.update_us = horizontal(t.measured_pos), time_us
             elif fuse(t, est):
                 t.update_us = time_us
     watch(t, events, time_us, is_raw)

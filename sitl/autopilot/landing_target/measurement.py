@@ -78,5 +78,5 @@ def measure(t: LandingTarget, est: Estimate, height: float, p: PrecisionLanding,
         distance = max(height - abs(dot(sensor, middle)), 0.0) / ahead
     if distance > FAR:
         return False
-    t.place = distance * line + sensor
+    t.measured_pos = distance * line + sensor
     return True

@@ -44,7 +44,7 @@ class LandingTarget(Record):
     distance: float  # [m]; 0 unknown
     line_us: int  # when it came; 0 never
     used_us: int  # ``line_us`` of the last one that gave a position
-    place: Vec3  # that position [m]
+    measured_pos: Vec3  # that position [m]
     sees: bool  # the sensor is well, and a beacon in its view
     reported: int  # TOLD_BEACON, TOLD_FRAME
     # the estimate, as of PLND_LAG ago
@@ -61,5 +61,5 @@ class LandingTarget(Record):
     closing: Vec2  # its velocity [m/s]
     status: int  # NEVER_SEEN, ...
     lost_us: int  # when it was lost
-    last_place: Vec3  # where it was last measured, from the origin [m]
+    last_pos: Vec3  # where it was last measured, from the origin [m]
     seen_from: Vec3  # where the vehicle was then [m]

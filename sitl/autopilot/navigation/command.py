@@ -29,7 +29,7 @@ def give(nav: Nav, kind: int, seq: int) -> None:
     nav.command_kind, nav.command_seq = kind, seq
     nav.command_count += 1
     nav.completed, nav.since_us = False, 0
-    nav.has_place, nav.delay, nav.turns = False, 0.0, 0.0
+    nav.has_target, nav.delay, nav.turns = False, 0.0, 0.0
 
 
 def give_none(nav: Nav) -> None:

@@ -71,7 +71,8 @@ def request_legs(nav: Nav, events: Events, time_us: int, target: Vec3, following
 @law
 def set_position(detour: Detour, k: int, position: Vec3) -> None:
     """Position ``k`` of a detour, NED [m]."""
-    detour.places[3 * k], detour.places[3 * k + 1], detour.places[3 * k + 2] = position.x, position.y, position.z
+    rows = detour.waypoints
+    rows[3 * k], rows[3 * k + 1], rows[3 * k + 2] = position.x, position.y, position.z
 
 
 @law

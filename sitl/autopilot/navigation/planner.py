@@ -29,7 +29,7 @@ def _rows(v: Any, is_closed: bool) -> list[Row]:
     """OADJ"""
     nav, est = v.autopilot.modes.nav, v.autopilot.estimate
     detour = nav.detour
-    goal = vector_at(detour.places, 0) if detour.left > 0 else nav.target
+    goal = vector_at(detour.waypoints, 0) if detour.left > 0 else nav.target
     state = (
         (3, 2, 0, 0) if is_closed else (2, 0, 1, min(detour.left + 2, 255))
     )  # an error: no path; found: so many points
@@ -141,7 +141,7 @@ class Planner(ABC, Generic[A]):
         detour.bend = STRAIGHT if has_bent else detour.bend
         is_old = has_bent or detour.blocked_us != 0 or detour.areas != areas_of(ap.fence, ap.params.OA, ap.params.FENCE)
         if is_old and not nav.reached and nav.current.segments > 0:
-            target = vector_at(detour.places, 0) if detour.left > 0 else end(nav.current)
+            target = vector_at(detour.waypoints, 0) if detour.left > 0 else end(nav.current)
             self.begin(ap, time_us, target)
         elif nav.request_pending == GO_ON and detour.left > 0:
             nav.reached = True
@@ -155,7 +155,7 @@ class Planner(ABC, Generic[A]):
     def _go_to_next(self, ap: A, time_us: int) -> None:
         detour = ap.modes.nav.detour
         detour.left -= 1
-        self.begin_leg(ap, time_us, vector_at(detour.places, 3 * detour.left))
+        self.begin_leg(ap, time_us, vector_at(detour.waypoints, 3 * detour.left))
         if detour.left > 0:
             self.look_ahead(ap, None)
 
@@ -193,7 +193,7 @@ class Planner(ABC, Generic[A]):
         if nav.next.started:
             return
         if nav.detour.left > 0:
-            target = vector_at(nav.detour.places, 3 * nav.detour.left - 3)
+            target = vector_at(nav.detour.waypoints, 3 * nav.detour.left - 3)
         clear(nav.next)
         nav.current.fast = False
         if target is None or separation(end(nav.current), target) < SHORTEST or nav.current.length < SHORTEST:

@@ -20,13 +20,13 @@ LOITER_UNLIMITED = 3  # fly the leg to target, stay
 LOITER_TURNS = 4  # circles: radius, turns
 LOITER_TIME = 5  # fly the leg to target, stay for delay
 RTL = 6
-LAND = 7  # at target when has_place, else where it is
+LAND = 7  # at target when has_target, else where it is
 DELAY = 8  # stay where it is for delay
-GUIDED = 9  # set-points drive, until a limit is reached (a rover: or target, when has_place)
+GUIDED = 9  # set-points drive, until a limit is reached (a rover: or target, when has_target)
 YAW_SPEED = 10  # rover: turn to a heading at a speed
 PASSED_OVER = 11  # complete at once
 LOITER_TO_ALT = 12  # copter: fly the leg to target, then climb or sink to its height
-PAYLOAD_PLACE = 13  # copter: at target when has_place, else where it is: down, release, up again
+PAYLOAD_PLACE = 13  # copter: at target when has_target, else where it is: down, release, up again
 
 # Conditions that hold back the do-commands that follow them (``condition_kind``)
 CONDITION_NONE = 0
@@ -99,7 +99,7 @@ class Detour(Record):
     """A path around fences: positions behind the end of the leg under way (``navigation.detour``)."""
 
     left: int  # positions that are still to come, the destination the last of them; 0: none
-    places: Floats = array(3 * DETOUR, stored="f4")  # the next one last, NED [m]
+    waypoints: Floats = array(3 * DETOUR, stored="f4")  # the next one last, NED [m]
     areas: int  # the areas of the fence that it was laid around (``path.areas_of``)
     blocked_us: int  # there is no path: when that was found; 0 not
     reported_us: int  # when it was last said
@@ -119,7 +119,7 @@ class Nav(Record):
     command_count: int  # one more for each command given: a change tells the mode to begin it
     command_seq: int  # its number in the mission; 0 none
     target: Vec3  # NED [m]
-    has_place: bool  # LAND, LOITER: target was given
+    has_target: bool  # LAND, LOITER: target was given
     delay: float  # [s]
     turns: float
     circle_radius: float  # LOITER_TURNS: < 0 counter-clockwise [m]

@@ -49,7 +49,7 @@ def move_guided(g: GuidedState, d: Displacement) -> None:
 @law
 def move_loiter(state: LoiterState, d: Displacement) -> None:
     """LOITER's position."""
-    state.place, state.heading = moved_ne(d, state.place), turned_heading(d, state.heading)
+    state.hold_pos, state.heading = moved_ne(d, state.hold_pos), turned_heading(d, state.heading)
 
 
 @law
@@ -71,7 +71,7 @@ def move_modes(m: Modes, d: Displacement) -> None:
     move_guided(m.guided, d)
     move_loiter(m.loiter, d)
     move_circle(m.circle, d)
-    m.dock.place = moved_ne(d, m.dock.place)
+    m.dock.pos = moved_ne(d, m.dock.pos)
     move_path(m.path, d)
     move_nav(m.nav, d)
     m.simple.first_heading = turned_heading(d, m.simple.first_heading)

@@ -70,7 +70,7 @@ class RoverCommands(Commands[Vehicle]):
         elif kind in (kinds.LOITER_TURNS, kinds.GUIDED):
             nav.target = position
         command.give(nav, kind, seq)
-        nav.has_place = not item.no_location
+        nav.has_target = not item.no_location
         if kind in LEGS:
             nav.delay = 0.0 if kind == kinds.LOITER_UNLIMITED else whole_seconds(item)
         elif kind == kinds.LOITER_TURNS:

@@ -278,7 +278,7 @@ class TerrainService(Service):
         is_plain = vehicle.has_truth_in_record and vehicle.has_plain_ground
         if not (self._blocks and is_plain):
             return
-        start = vehicle.v.physics.place
+        start = vehicle.v.physics.origin
         height = self.height(start.lat, start.lon)
         away = offset_ne(start.lat, start.lon, est.origin_lat, est.origin_lon)
         if height is not None and max(map(abs, away)) < START_RADIUS:

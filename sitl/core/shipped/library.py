@@ -68,6 +68,7 @@ def unit_key(name: str, path: str) -> str:
     return f"{name} {path}"
 
 
+_keep_for_ever = ctypes.PYFUNCTYPE(None, ctypes.py_object)(("Py_IncRef", ctypes.pythonapi))
 _new_function = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)(
     ("PyCFunction_NewEx", ctypes.pythonapi)
 )
@@ -90,12 +91,12 @@ class Library:
         if not _is_whole(file):
             raise ValueError(f"{file} is not a whole library")
         self._code = ctypes.CDLL(str(file))
-        self._methods: list[_MethodDef] = []  # Python does not copy them
-        self._format = ctypes.create_string_buffer(b"")
+        no_format = ctypes.create_string_buffer(b"")
+        _keep_for_ever(no_format)  # as the code does
         table = (ctypes.c_void_p * len(PYTHON)).in_dll(self._code, TABLE)
         for k, name in enumerate(PYTHON[:-1]):
             table[k] = ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value
-        table[len(PYTHON) - 1] = ctypes.addressof(self._format)
+        table[len(PYTHON) - 1] = ctypes.addressof(no_format)
         said = json.loads(ctypes.string_at(ctypes.addressof(self._at(CONTENTS))))
         self.identities: dict[str, str] = said["contents"]
         self.made_with: str = said["made with"]
@@ -119,7 +120,7 @@ class Library:
         """A kernel as a function of Python that takes numbers and arrays; other threads wait until it returns."""
         address = ctypes.addressof(self._at(call_symbol(symbol)))
         definition = _MethodDef(symbol.encode(), address, _METH_FASTCALL, None)
-        self._methods.append(definition)
+        _keep_for_ever(definition)  # Python reads it until the function goes, which may be after this module
         return _new_function(ctypes.addressof(definition), None, None)
 
     def redirect(self, symbol: str, address: int) -> None:

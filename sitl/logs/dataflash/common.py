@@ -352,7 +352,7 @@ AHR2 = Message("AHR2", bits.MEDIUM, _ATTITUDE).of(
     *(Field(f"Q{n + 1}", "f", source=f"{E}q[{n}]") for n in range(4)),
 )
 """AHR2: the second attitude source; this firmware has one estimator and logs it again, as AHRS2 reports it."""
-_BODY, _GROUND = "physics.body.", "physics.place."
+_BODY, _GROUND = "physics.body.", "physics.origin."
 
 
 def gps(boot_unix_us: int) -> tuple[Message, ...]:
@@ -397,7 +397,7 @@ LANDING_TARGET = Message("PL", bits.MEDIUM, bits.CONTROL | bits.NAVIGATION, when
     Field("TAcq", "B", source=_TARGET + "acquired"),
     *(Field(f"p{axis}", "f", "m", "0", _acquired(f"away[{k}]")) for k, axis in enumerate("XY")),
     *(Field(f"v{axis}", "f", "n", "0", _acquired(f"closing[{k}]")) for k, axis in enumerate("XY")),
-    *(Field(f"m{axis}", "f", "m", "0", f"{_TARGET}place[{k}]") for k, axis in enumerate("XYZ")),
+    *(Field(f"m{axis}", "f", "m", "0", f"{_TARGET}measured_pos[{k}]") for k, axis in enumerate("XYZ")),
     Field("LastMeasMS", "I", "s", "C", _TARGET + "used_us", 1e-3),
     Field("EKFOutl", "I", source=_TARGET + "outliers"),
     Field("Est", "B", source=A + "params.PLND.EST_TYPE"),

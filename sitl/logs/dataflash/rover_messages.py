@@ -76,8 +76,8 @@ def _on_circle(s: Any) -> Array:
 def _to_target(s: Any) -> tuple[Array, Array]:
     """Vector from the vehicle to its target: north, east [m]; 0 without a target."""
     targets = (
-        (_on_path(s), "nav.target"), (_holding_position(s), "loiter.place"), (_on_circle(s), "circle.target"),
-        (_any_of(s, (DOCK,), ()), "dock.place"),
+        (_on_path(s), "nav.target"), (_holding_position(s), "loiter.hold_pos"), (_on_circle(s), "circle.target"),
+        (_any_of(s, (DOCK,), ()), "dock.pos"),
     )  # fmt: skip
 
     def offset(k: int) -> Array:

@@ -156,7 +156,7 @@ class JsbsimEngine(Engine):
         self.air.be_still()
         self.air.seed(int(self.vehicle.v.rng.s[0]))
         start.begin(self.executive, self._motion())
-        self.air.settle(float(p.place.alt))
+        self.air.settle(float(p.origin.alt))
         self.air.blow(list(p.wind.steady))
         self.model.starting()
         self.model.inputs()

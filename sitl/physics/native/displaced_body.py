@@ -20,7 +20,7 @@ from ...core.vectors import Quat, Vec2, Vec3
 from . import wind
 from .atmosphere import pressure, set_air
 from .obstacles import nearest
-from .records import GPS_RING, Body, Fix, GpsReceiver, Obstacles, Physics, Place
+from .records import GPS_RING, Body, Fix, GpsReceiver, Obstacles, Origin, Physics
 from .tick import Clock
 
 INSIDE = 1e-6
@@ -40,11 +40,11 @@ def _nearest(x: float) -> int:
 
 
 @law
-def moved_fix(place: Place, d: Displacement, lat: float, lon: float, age: float) -> Vec2:
+def moved_fix(origin: Origin, d: Displacement, lat: float, lon: float, age: float) -> Vec2:
     """Latitude (x) and longitude (y) [degE7] of a fix that is ``age`` [s] old, in a frame with its origin at home."""
-    there = offset_ne(place.lat, place.lon, lat, lon)
+    there = offset_ne(origin.lat, origin.lon, lat, lon)
     to = moved(d, Vec3(there.x, there.y, 0.0)) - age * d.velocity
-    found = add_offset(place.lat, place.lon, to.x, to.y)
+    found = add_offset(origin.lat, origin.lon, to.x, to.y)
     return Vec2(_nearest(found.lat), _nearest(found.lon))
 
 
@@ -62,30 +62,30 @@ def rise(d: Displacement, age: float) -> int:
 
 
 @law
-def move_fix(fix: Fix, place: Place, d: Displacement, age: float) -> None:
+def move_fix(fix: Fix, origin: Origin, d: Displacement, age: float) -> None:
     """A fix on its way to the reader, ``age`` [s] old."""
-    to = moved_fix(place, d, fix.lat, fix.lon, age)
+    to = moved_fix(origin, d, fix.lat, fix.lon, age)
     fix.lat, fix.lon = int(to.x), int(to.y)
     fix.alt += rise(d, age)
     fix.vel = moved_velocity(d, fix.vel)
 
 
 @law
-def move_fixes(r: GpsReceiver, place: Place, d: Displacement, tick: int, delay: int) -> None:
+def move_fixes(r: GpsReceiver, origin: Origin, d: Displacement, tick: int, delay: int) -> None:
     """All fixes on their way; ``delay`` of the receiver [ticks]."""
     r.drift = turned(d, r.drift)
     for n in range(r.tail, r.head):
         fix = r.fixes[n % GPS_RING]
         if fix.type >= GpsFixType.FIX_3D:
-            move_fix(fix, place, d, TICK_S * (tick - fix.due + delay))
+            move_fix(fix, origin, d, TICK_S * (tick - fix.due + delay))
 
 
 @law
-def move_delivered(shown: GpsReading, place: Place, d: Displacement, age: float) -> None:
+def move_delivered(shown: GpsReading, origin: Origin, d: Displacement, age: float) -> None:
     """The fix that the reader has, ``age`` [s] old."""
     if shown.gps_fix < GpsFixType.FIX_3D:
         return
-    to = moved_fix(place, d, shown.gps_lat, shown.gps_lon, age)
+    to = moved_fix(origin, d, shown.gps_lat, shown.gps_lon, age)
     shown.gps_lat, shown.gps_lon = int(to.x), int(to.y)
     shown.gps_alt += rise(d, age)
     shown.gps_vel = moved_velocity(d, shown.gps_vel)
@@ -95,14 +95,14 @@ def move_delivered(shown: GpsReading, place: Place, d: Displacement, age: float)
 def move_receiver(r: GpsReceiver, shown: GpsReading, p: Physics, d: Displacement, now: Clock) -> None:
     """A receiver's fixes, delivered and on their way."""
     delay = p.derived.gps_delay
-    move_fixes(r, p.place, d, now.tick, delay)
-    move_delivered(shown, p.place, d, 1e-6 * (now.time_us - shown.gps_time_us) + TICK_S * delay)
+    move_fixes(r, p.origin, d, now.tick, delay)
+    move_delivered(shown, p.origin, d, 1e-6 * (now.time_us - shown.gps_time_us) + TICK_S * delay)
 
 
 @law
 def move_air(p: Physics, sensors: Sensors, before: float) -> None:
     """Air and pressure of another height; ``before`` it was at so much above mean sea level [m]."""
-    after = p.place.alt - p.body.pos.z
+    after = p.origin.alt - p.body.pos.z
     change = 0.01 * (pressure(after) - pressure(before))
     sensors.abs_pressure += change
     sensors.abs_pressure2 += change
@@ -112,7 +112,7 @@ def move_air(p: Physics, sensors: Sensors, before: float) -> None:
 @law
 def move_physics(p: Physics, sensors: Sensors, d: Displacement, now: Clock) -> None:
     """Body and sensors are put elsewhere; solids are to be listed anew."""
-    before = p.place.alt - p.body.pos.z
+    before = p.origin.alt - p.body.pos.z
     move_body(p.body, d)
     if d.shift.z != 0.0:
         move_air(p, sensors, before)
@@ -129,7 +129,7 @@ def move_physics(p: Physics, sensors: Sensors, d: Displacement, now: Clock) -> N
 @law
 def show_field(p: Physics, sensors: Sensors, before: Quat) -> None:
     """The magnetometers' last sample, after the attitude ``before`` has changed."""
-    field = p.place.field
+    field = p.origin.field
     change = rotate_inverse(p.body.q, field) - rotate_inverse(before, field)
     sensors.mag += change
     sensors.mag2 += change

@@ -44,9 +44,9 @@ def clear(v: Vehicle[Physics], airframe: Airframe, seed: int) -> None:
 def place(p: Physics, home: Home) -> None:
     """Stand level and still at home, nose along its heading."""
     lat, lon, alt, heading = home
-    p.place.lat, p.place.lon = round(lat * 1e7), round(lon * 1e7)
-    p.place.alt = alt
-    p.place.field = Vec3(*field_ned(lat, lon))
+    p.origin.lat, p.origin.lon = round(lat * 1e7), round(lon * 1e7)
+    p.origin.alt = alt
+    p.origin.field = Vec3(*field_ned(lat, lon))
     b, half = p.body, 0.5 * math.radians(heading)
     b.pos = b.vel = b.rates = b.rates_mean = b.acc_ned = ZERO
     b.q = Quat(cos(half), 0.0, 0.0, sin(half))
@@ -60,7 +60,7 @@ def wake(v: Vehicle[Physics]) -> None:
     p.battery.voltage = p.airframe.battery_voltage_full
     p.battery.current = p.airframe.avionics_current
     w.steady = w.vel = wind.aim(w, -p.body.pos.z)
-    atmosphere.set_air(p.air, p.place.alt - p.body.pos.z)
+    atmosphere.set_air(p.air, p.origin.alt - p.body.pos.z)
     draw_errors(p.sensors, p.airframe, v.rng)
     first_samples(p, v.sensors, v.rng)
 

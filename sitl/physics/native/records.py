@@ -275,7 +275,7 @@ class Downward(Record):
     ground_d: float  # of the ground below the vehicle, down from the home ground point [m]
 
 
-class Place(Record):
+class Origin(Record):
     """The home ground point, known to the simulator alone."""
 
     lat: int  # [degE7]
@@ -313,7 +313,7 @@ class Physics(Record):
 
     airframe: Properties
     derived: Derived
-    place: Place
+    origin: Origin
     body: Body
     motion: Motion
     battery: BatteryState

@@ -37,8 +37,8 @@ class Truth(NamedTuple):
 def read(v: Any) -> Truth:
     """The truth of a vehicle (a view of its record) at its present time."""
     p = v.physics
-    b, place = p.body, p.place
-    lat, lon = add_offset(place.lat, place.lon, b.pos.x, b.pos.y)
+    b, origin = p.body, p.origin
+    lat, lon = add_offset(origin.lat, origin.lon, b.pos.x, b.pos.y)
     on_ground = not hasattr(p, "ground") or p.ground.state != GROUND_AIRBORNE  # a rover never leaves it
-    alt, euler = place.alt - b.pos.z, euler_of(b.q)
+    alt, euler = origin.alt - b.pos.z, euler_of(b.q)
     return Truth(v.time_us, lat * 1e-7, lon * 1e-7, alt, b.pos, b.vel, euler, b.rates, b.specific_force, on_ground)

@@ -117,8 +117,8 @@ def test_conditions() -> None:
 
 def test_a_command_begins_with_clean_fields() -> None:
     nav = Nav()
-    nav.completed = nav.has_place = True
+    nav.completed = nav.has_target = True
     nav.delay = nav.turns = 2.0
     give(nav, WAYPOINT, 4)
     assert (nav.command_kind, nav.command_seq, nav.command_count) == (WAYPOINT, 4, 1)
-    assert (nav.completed, nav.has_place, nav.delay, nav.turns) == (False, False, 0.0, 0.0)
+    assert (nav.completed, nav.has_target, nav.delay, nav.turns) == (False, False, 0.0, 0.0)

@@ -109,6 +109,12 @@ print(json.dumps({
     "found": repr(found), "types": [type(part).__name__ for part in found], "line": line.tolist(), "bound": repr(bound), "said": said,
 }))
 """  # noqa: E501
+OUTLIVE = """
+import sys
+import toy
+from sitl.core.shipped.library import kernel_symbol, library
+sys.kept = library().method(kernel_symbol("toy.add_up"))  # goes when all modules have gone
+"""
 
 
 def _linker_of(target: target_machines.Target) -> bool:
@@ -186,6 +192,12 @@ def test_shipped_code_does_what_is_compiled_and_needs_no_compiler(toy: Toy) -> N
     assert shipped["bound"] == AGAIN
     assert len(shipped["said"]) == len(compiled["said"]) == 5, "what does not fit is refused"
     assert "array_kernels" not in shipped["said"][0] and "add_up takes (Rows, float64, 1 axes" in shipped["said"][0]
+
+
+def test_a_function_that_outlives_its_module_ends_with_python(toy: Toy) -> None:
+    """Python reads the definition of a function when that goes; glibc overwrites here what is given back."""
+    environment = {"PYTHONMALLOC": "malloc", "MALLOC_PERTURB_": "255"}
+    toy._start(OUTLIVE, SITL_SHIPPED_DIR=str(toy.folder / "shipped"), **environment)
 
 
 def test_shipped_code_calls_a_unit_that_has_been_changed(toy: Toy) -> None:

@@ -199,7 +199,7 @@ def test_a_landing_target_is_logged(tmp_path: Path) -> None:
     run = Run(tmp_path, "copter", PLND_ENABLED=1, PLND_TYPE=4, **beacon)
     run.drive()
     target = run.simulation.v.autopilot.landing_target
-    away, place = tuple(target.away), tuple(target.place)
+    away, place = tuple(target.away), tuple(target.measured_pos)
     run.simulation.close()
     rows = read_log(run.path)["PL"]
     assert (rows[0].Heal, rows[0].TAcq, rows[0].mZ) == (0, 0, 0.0)

@@ -59,7 +59,7 @@ def test_forces_and_torques_are_those_of_native_physics(flying: Any, seed: int) 
     force = read(flying, *(f"forces/fb{axis}-aero-lbs" for axis in "xyz")) * POUND
     torque = read(flying, *(f"moments/{axis}-aero-lbsft" for axis in "lmn")) * POUND_FOOT
     power = read(flying, "rotor/power")[0]
-    atmosphere.set_air(flying.p.air, flying.p.place.alt - flying.p.body.pos.z)
+    atmosphere.set_air(flying.p.air, flying.p.origin.alt - flying.p.body.pos.z)
     wrench = act(flying.p)
     expected = np.array([*wrench.force, *wrench.torque])
     scale = np.abs(expected).max() + 10.0

@@ -59,7 +59,7 @@ def test_noise_scale_zero_is_the_truth(rig):
     s = r.v.sensors
     assert list(s.acc) == approx([0.0, 0.0, -9.80665], abs=1e-6)
     assert list(s.gyro) == [0.0, 0.0, 0.0]
-    assert list(s.mag) == approx(r.p.place.field, abs=1e-7)
+    assert list(s.mag) == approx(r.p.origin.field, abs=1e-7)
 
 
 def test_the_gyros_of_ardupilots_airframes_drift_and_come_back(rig):
@@ -86,7 +86,7 @@ def test_gps_is_late_by_its_delay_and_comes_at_its_rate(rig):
         gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         if s.gps_count != before:
             arrivals.append(tick)
-            north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
+            north = (int(s.gps_lat) - int(p.origin.lat)) * METRES_PER_DEGE7
             then = tick - 53  # 132.5 ms ago
             assert north == approx(0.0025 * then * 10.0, abs=0.006)  # steps of 1e-7 degree
             assert s.gps_time_us == tick * 2500
@@ -105,7 +105,7 @@ def test_a_late_receiver_takes_no_more_fixes_than_can_be_on_their_way(rig):
         gps.sample(p, s, Clock(tick, tick * 2500), r.v.rng)
         if s.gps_count != before:
             arrivals.append(tick)
-            north = (int(s.gps_lat) - int(p.place.lat)) * METRES_PER_DEGE7
+            north = (int(s.gps_lat) - int(p.origin.lat)) * METRES_PER_DEGE7
             assert north == approx(0.0025 * (tick - 400) * 10.0, abs=0.006)
     assert 26 <= len(arrivals) <= 36 and np.diff(arrivals).max() <= 160
 
@@ -129,7 +129,7 @@ def test_gps_errors_have_their_deviation(rig):
         gps.take(r.p, r.p.sensors.gps[0], 10_000 + k, r.v.rng)
         gps.deliver(r.p.sensors.gps[0], r.v.sensors, Clock(20_000 + k, 0), r.p.airframe)
         s = r.v.sensors
-        north = (int(s.gps_lat) - int(r.p.place.lat)) * METRES_PER_DEGE7
+        north = (int(s.gps_lat) - int(r.p.origin.lat)) * METRES_PER_DEGE7
         rows.append((north, s.gps_alt / 1e3 - 584.0, *s.gps_vel))
     north, up, *velocity = np.array(rows).std(axis=0)
     assert (north, up) == approx((0.10, 0.20), rel=0.12)

@@ -126,7 +126,7 @@ def begin(v: Vehicle) -> None:
         guided.begin_limits(modes.guided, v.time_us, horizontal(est.pos))
     elif auto.submode == PAYLOAD_PLACE:
         payload_place.begin(v)
-    elif auto.submode == LAND and not nav.has_place:
+    elif auto.submode == LAND and not nav.has_target:
         begin_descent(modes, v.time_us, control, est, p)
 
 

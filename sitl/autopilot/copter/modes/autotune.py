@@ -162,7 +162,7 @@ def start(v: Vehicle) -> int:
     if is_new and next_axis(int(ap.params.AUTOTUNE.AXES), 0) == gains.AXES:
         return ModeResult.INIT_FAILED
     alt_hold.start_vertical(modes.takeoff, ap.control, ap.estimate, ap.params)
-    t.holds_place = from_mode in (LOITER, POSHOLD) and ap.estimate.position_ok
+    t.holds_position = from_mode in (LOITER, POSHOLD) and ap.estimate.position_ok
     t.overridden_us = 0
     stay_here(v)
     if gains.has_found(t):
@@ -182,7 +182,7 @@ def start(v: Vehicle) -> int:
 def stay_here(v: Vehicle) -> None:
     """The present position and heading are held."""
     t, est = v.autopilot.modes.autotune, v.autopilot.estimate
-    t.place, t.heading = horizontal(est.pos), est.yaw
+    t.hold_pos, t.heading = horizontal(est.pos), est.yaw
 
 
 @law
@@ -248,7 +248,7 @@ def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
     t, sticks = v.autopilot.modes.autotune, v.autopilot.modes.pilot
     leans = sticks.roll != 0.0 or sticks.pitch != 0.0
     if leans:
-        t.place = horizontal(v.autopilot.estimate.pos)
+        t.hold_pos = horizontal(v.autopilot.estimate.pos)
     if t.phase != TUNING:
         return False
     by_sticks = leans or sticks.yaw != 0.0 or climb != 0.0
@@ -271,9 +271,9 @@ def is_overridden(v: Vehicle, climb: float, flies: bool) -> bool:
 def hold(v: Vehicle) -> attitude.Lean:
     """Lean back to the position, by the distance. Far off, turn so that the axis being tuned leans little."""
     est, t = v.autopilot.estimate, v.autopilot.modes.autotune
-    away = horizontal(est.pos) - t.place
+    away = horizontal(est.pos) - t.hold_pos
     distance = norm2(away)
-    if not t.holds_place or distance < _HOLD_NEAR:
+    if not t.holds_position or distance < _HOLD_NEAR:
         return attitude.Lean(0.0, 0.0)
     if distance >= _TURN_FAR:
         heading = atan2(away.y, away.x) + (0.5 * PI if t.axis == PITCH else 0.0)

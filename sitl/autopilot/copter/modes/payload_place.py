@@ -54,7 +54,7 @@ def begin(v: Vehicle) -> None:
     """Begin the command that the shell has written."""
     ap = v.autopilot
     ap.modes.payload_place.speed = 0.0
-    if ap.modes.nav.has_place:
+    if ap.modes.nav.has_target:
         ap.modes.payload_place.stage = FLYING
     else:
         start_descent(v)

@@ -116,7 +116,7 @@ def give_up(land: LandState, events: Events, time_us: int, p: PrecisionLanding) 
 @law
 def position_to_try(land: LandState, t: LandingTarget, p: PrecisionLanding) -> Vec3:
     """Where to look for the target again, from the origin [m]."""
-    over = t.seen_from if p.RET_BEHAVE == 0.0 else t.last_place
+    over = t.seen_from if p.RET_BEHAVE == 0.0 else t.last_pos
     return with_down(horizontal(over), t.seen_from.z - (RETRY_CLIMB if land.stage == CLIMBING else 0.0))
 
 
@@ -188,7 +188,7 @@ def over_target(t: LandingTarget, rate: float, p: Parameters) -> float:
     aside = distance(t)
     if aside > p.PLND.XY_DIST_MAX > 0.0:
         return 0.0
-    if SLOW_TO < t.place.z < SLOW_FROM and not has_option(p.PLND, _FAST):
+    if SLOW_TO < t.measured_pos.z < SLOW_FROM and not has_option(p.PLND, _FAST):
         half = 0.5 * abs(p.LAND.SPEED) * 0.01
         return max(SLOWEST, half - half * aside / ERROR_MAX)
     return rate

@@ -162,11 +162,11 @@ class SystemIdState(Record):
     """SYSTEMID."""
 
     testing: bool  # the chirp runs
-    holds_place: bool  # an axis of the position
+    holds_position: bool  # an axis of the position
     time: float  # since the mode began [s]
     value: float  # of the chirp
     frequency: float  # [rad/s]
-    place: Vec2  # to hold, NE [m]
+    hold_pos: Vec2  # to hold, NE [m]
     vel: Vec2  # [m/s]
     acc: Vec2  # [m/s^2]
 
@@ -212,9 +212,9 @@ class AutotuneState(Record):
     angle_max: float  # [rad]
     angle_min: float  # after the greatest
     accel: float  # up to the greatest rate [rad/s^2]
-    place: Vec2  # to come back to, NE [m]
+    hold_pos: Vec2  # to come back to, NE [m]
     heading: float  # [rad]
-    holds_place: bool
+    holds_position: bool
     roll_before: AxisGains
     pitch_before: AxisGains
     yaw_before: AxisGains

@@ -190,8 +190,8 @@ def start(v: Vehicle) -> int:
         return ModeResult.INIT_FAILED
     state.time = 0.0
     state.testing = True
-    state.holds_place = POSITION_RIGHT <= axis <= SPEED_FORWARD
-    state.place = ap.control.pos_ne.pos_desired
+    state.holds_position = POSITION_RIGHT <= axis <= SPEED_FORWARD
+    state.hold_pos = ap.control.pos_ne.pos_desired
     state.vel = Vec2(0.0, 0.0)
     report(v, STARTED, float(axis))
     return ModeResult.ACCEPTED
@@ -233,7 +233,7 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     state, axis = ap.modes.systemid, int(ap.params.SID.AXIS)
     state.value = sample(v)
-    if state.holds_place:
+    if state.holds_position:
         run_at_position(v, axis, state.value)
     else:
         run_by_hand(v, axis, state.value)
@@ -294,7 +294,7 @@ def run_at_position(v: Vehicle, axis: int, added: float) -> None:
     path.disturbance_vel = push if axis >= VELOCITY_RIGHT else zero
     state = modes.systemid
     follow_speed(state, zero if axis < SPEED_RIGHT else push)
-    position.set_pos_vel_accel_ne(path, Motion2(state.place, state.vel, state.acc))
+    position.set_pos_vel_accel_ne(path, Motion2(state.hold_pos, state.vel, state.acc))
     position.update_ne(control, est, p)
     alt_hold.set_limits(control.pos_d, p)
     altitude.input_vel_accel_d(control.pos_d, -alt_hold.climb_rate(modes, ap.rc, control.pos_d, p), 0.0)
@@ -306,7 +306,7 @@ def run_at_position(v: Vehicle, axis: int, added: float) -> None:
 @law
 def follow_speed(state: SystemIdState, vel: Vec2) -> None:
     """The position moves with a velocity [m/s]."""
-    state.place += vel * DT
+    state.hold_pos += vel * DT
     state.acc = (vel - state.vel) / DT
     state.vel = vel
 

@@ -174,7 +174,7 @@ def is_done(modes: Modes, time_us: int, pos: Vec2, radius: float) -> bool:
     if submode == RETURNING:
         return waypoint.reached(nav)
     if submode == GUIDED_IN_MISSION:
-        at_position = nav.has_place and norm2(horizontal(nav.target) - pos) <= radius
+        at_position = nav.has_target and norm2(horizontal(nav.target) - pos) <= radius
         return at_position or guided.is_at_limit(modes.guided, time_us, pos)
     if submode == TURNING:
         return modes.auto.heading_reached

@@ -69,8 +69,8 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     dock, t, control, p = ap.modes.dock, ap.landing_target, ap.control, ap.params
     if t.acquired:
-        dock.place = target_position(t, ap.estimate)
-    away = dock.place - horizontal(ap.estimate.pos)
+        dock.pos = target_position(t, ap.estimate)
+    away = dock.pos - horizontal(ap.estimate.pos)
     if not dock.done and ap.estimate.position_ok:
         dock.distance = norm2(away)
         if dock.distance <= p.DOCK.STOP_DIST or (dock.distance < LAST_PART and not t.acquired):
@@ -79,7 +79,7 @@ def run(v: Vehicle) -> None:
     if dock.done or not ap.estimate.position_ok:
         speed.stop(control, ap.arming.armed, p)
         return
-    position.input_pos(control.position, dock.place - lead_in(away, dock.distance, p))
+    position.input_pos(control.position, dock.pos - lead_in(away, dock.distance, p))
     position.follow_target(control, ap.estimate, ap.arming.armed, p)
     drive.turn(control, ap.estimate, ap.modes.pilot, control.position.desired_turn_rate, p)
     aside = turned(away, -ap.estimate.yaw).y
@@ -109,7 +109,7 @@ def slowed(wanted: float, aside: float, distance: float) -> float:
 @law
 def destination(modes: Modes) -> Destination:
     """The dock."""
-    return Destination(POSITION_TO_HOLD, modes.dock.place)
+    return Destination(POSITION_TO_HOLD, modes.dock.pos)
 
 
 MODE = RoverMode(

@@ -33,7 +33,7 @@ def start(v: Vehicle) -> int:
     if not ap.estimate.origin_set:
         return ModeResult.INIT_FAILED
     loiter = ap.modes.loiter
-    loiter.place = waypoint.stopping_point(ap.estimate, ap.params.ATC)
+    loiter.hold_pos = waypoint.stopping_point(ap.estimate, ap.params.ATC)
     sense(ap.control.speed, ap.estimate, v.sensors, v.time_us)
     loiter.speed = ap.control.speed.forward
     loiter.heading = ap.estimate.yaw
@@ -46,7 +46,7 @@ def aim(loiter: LoiterState, pos: Vec2, yaw: float, params: Parameters) -> None:
     """Heading and speed back to the position for a vehicle at ``pos`` [m], from beyond LOIT_RADIUS."""
     p = params.LOIT
     wanted = min((loiter.distance - p.RADIUS) * p.SPEED_GAIN, params.WP.SPEED)
-    offset = loiter.place - pos
+    offset = loiter.hold_pos - pos
     heading = atan2(offset.y, offset.x)
     error = wrap_pi(heading - yaw)
     behind = abs(error) > 0.5 * math.pi
@@ -65,7 +65,7 @@ def run(v: Vehicle) -> None:
     ap = v.autopilot
     loiter = ap.modes.loiter
     pos = horizontal(ap.estimate.pos)
-    loiter.distance = norm2(loiter.place - pos)
+    loiter.distance = norm2(loiter.hold_pos - pos)
     if loiter.distance <= ap.params.LOIT.RADIUS:
         loiter.speed = speed.accel_limited(ap.control, 0.0, ap.params.ATC)
     else:
@@ -77,7 +77,7 @@ def run(v: Vehicle) -> None:
 @law
 def destination(modes: Modes) -> Destination:
     """The position to stay at."""
-    return Destination(POSITION_TO_HOLD, modes.loiter.place)
+    return Destination(POSITION_TO_HOLD, modes.loiter.hold_pos)
 
 
 MODE = RoverMode(

@@ -32,7 +32,7 @@ def start(v: Vehicle) -> int:
     drive.begin_return(nav, ap.control.position, ap.params)
     target = rally.best(ap.rally, ap.estimate, ap.home, ap.fence, ap.params, HEIGHTS)
     request_leg(nav, ap.events, v.time_us, with_down(horizontal(target), 0.0))
-    ap.modes.rtl.told = False
+    ap.modes.rtl.is_reported = False
     return ModeResult.ACCEPTED
 
 
@@ -43,8 +43,8 @@ def run(v: Vehicle) -> None:
     if not waypoint.reached(ap.modes.nav):
         drive.follow_path(v)
         return
-    if not ap.modes.rtl.told:
-        ap.modes.rtl.told = True
+    if not ap.modes.rtl.is_reported:
+        ap.modes.rtl.is_reported = True
         emit(ap.events, v.time_us, DESTINATION_REACHED, float(ap.modes.number), 0.0)
     speed.stop(ap.control, ap.arming.armed, ap.params)
 

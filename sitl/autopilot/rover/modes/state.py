@@ -38,7 +38,7 @@ class GuidedState(Record):
 class LoiterState(Record):
     """LOITER."""
 
-    place: Vec2  # [m]
+    hold_pos: Vec2  # [m]
     heading: float  # [rad]
     speed: float  # [m/s]
     distance: float  # to the position [m]
@@ -62,7 +62,7 @@ class CircleState(Record):
 class DockState(Record):
     """DOCK."""
 
-    place: Vec2  # the dock, as last seen [m]
+    pos: Vec2  # the dock, as last seen [m]
     distance: float  # from it [m]
     done: bool  # it is there
 
@@ -77,7 +77,7 @@ class SimpleState(Record):
 class RtlState(Record):
     """RTL."""
 
-    told: bool  # arrival was said
+    is_reported: bool  # arrival was said
 
 
 class SmartRtlState(Record):

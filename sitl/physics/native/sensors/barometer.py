@@ -67,7 +67,7 @@ def sample(p: Physics, sensors: Sensors, rng: Rng) -> None:
     fault = s.baros[0]
     if s.baro_missing or (fault.off and not s.baros_differ):
         return
-    altitude = p.place.alt - p.body.pos.z
+    altitude = p.origin.alt - p.body.pos.z
     error = pressure_error(s, p.airframe, p.derived, rng)
     if not fault.off:
         sensors.abs_pressure = 0.01 * shown(p, fault, altitude, error, rng)

@@ -20,7 +20,7 @@ from ....core.mavlink import GpsFixType
 from ....core.rng import Rng, normal_vector, uniform
 from ....core.vectors import Vec3
 from ....vehicles.properties.body import Sensors as SensorProperties
-from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Physics, Place
+from ..records import GPS_RING, Body, Derived, Fix, GpsFault, GpsReceiver, Origin, Physics
 from ..tick import Clock
 
 UNKNOWN_DOP = 9999
@@ -69,15 +69,15 @@ def measure(r: GpsReceiver, body: Body, a: SensorProperties, d: Derived, rng: Rn
 
 
 @law
-def send(r: GpsReceiver, place: Place, found: Measured, due: int, fix_type: int) -> None:
+def send(r: GpsReceiver, origin: Origin, found: Measured, due: int, fix_type: int) -> None:
     """Send a fix on its way, to be delivered at tick ``due``."""
     pos, vel = found.pos, found.vel
-    lat, lon = add_offset(place.lat, place.lon, pos.x, pos.y)
+    lat, lon = add_offset(origin.lat, origin.lon, pos.x, pos.y)
     fix = r.fixes[r.head % GPS_RING]
     r.head += 1
     fix.due, fix.type, fix.jammed = due, fix_type, r.jammed
     fix.lat, fix.lon = _nearest(lat), _nearest(lon)
-    fix.alt = _nearest((place.alt - pos.z) * 1000.0)
+    fix.alt = _nearest((origin.alt - pos.z) * 1000.0)
     fix.vel = Vec3(_nearest(vel.x * 100.0), _nearest(vel.y * 100.0), _nearest(vel.z * 100.0))
 
 
@@ -137,7 +137,7 @@ def take(p: Physics, r: GpsReceiver, tick: int, rng: Rng) -> None:
     else:
         r.jam_end = 0
     delay = fault.delay if fault.is_on and fault.delay >= 0 else d.gps_delay
-    send(r, p.place, found, tick + delay, fix_type)
+    send(r, p.origin, found, tick + delay, fix_type)
     if fault.is_on:
         spoil(r.fixes[(r.head - 1) % GPS_RING], fault, tick * TICK_S)
 

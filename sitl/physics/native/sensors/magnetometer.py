@@ -32,7 +32,7 @@ def shown(field: Vec3, iron: Iron) -> Vec3:
 def sample(p: Physics, sensors: Sensors, rng: Rng, time_us: int) -> None:
     """Write mag, mag2 and mag3 [gauss], body frame. The compasses differ by what iron does to them, and by faults."""
     s = p.sensors
-    field, irons, silent = measure_field(p.body.q, p.place.field, p.airframe, rng), s.irons, s.compass_silent
+    field, irons, silent = measure_field(p.body.q, p.origin.field, p.airframe, rng), s.irons, s.compass_silent
     if s.is_disturbed:
         field += p.battery.current * s.compass_by_current + s.compass_noise * normal_vector(rng)
     if silent & 1 == 0:

@@ -24,7 +24,7 @@ def sense(p: Physics, sensors: Sensors, rng: Rng, now: Clock) -> None:
     if tick % p.derived.mag_period == 1:
         magnetometer.sample(p, sensors, rng, now.time_us)
     if tick % p.derived.baro_period == 1:
-        set_air(p.air, p.place.alt - p.body.pos.z)
+        set_air(p.air, p.origin.alt - p.body.pos.z)
         barometer.sample(p, sensors, rng)
     gps.sample(p, sensors, now, rng)
     if p.downward.present:

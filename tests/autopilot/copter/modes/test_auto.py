@@ -206,11 +206,11 @@ def test_a_new_command_is_begun_once_and_reported_when_it_is_done(monkeypatch: p
     assert [b for _, b in told(v, kinds.COMMAND_COMPLETE)] == [3.0]
 
 
-@pytest.mark.parametrize(("has_place", "state"), ((True, FLYING), (False, DESCENDING)))
-def test_a_landing_without_a_place_goes_down_at_once(has_place: bool, state: int) -> None:
+@pytest.mark.parametrize(("has_target", "state"), ((True, FLYING), (False, DESCENDING)))
+def test_a_landing_without_a_target_goes_down_at_once(has_target: bool, state: int) -> None:
     v = on_mission()
     modes = v.autopilot.modes
-    modes.nav.command_count, modes.nav.command_kind, modes.nav.has_place = 1, kinds.LAND, has_place
+    modes.nav.command_count, modes.nav.command_kind, modes.nav.has_target = 1, kinds.LAND, has_target
     auto.begin(v)
     assert modes.auto.land_state == state
     assert auto.is_landing(modes) == (state == DESCENDING)

@@ -86,7 +86,7 @@ def test_it_holds_its_place_when_the_mode_before_did(mode: int, located: int, ho
     turn_to(v, 0.7)
     assert autotune.start(v) == ModeResult.ACCEPTED
     t = v.autopilot.modes.autotune
-    assert (bool(t.holds_place), tuple(t.place), t.heading) == (holds, (3.0, 4.0), 0.7)
+    assert (bool(t.holds_position), tuple(t.hold_pos), t.heading) == (holds, (3.0, 4.0), 0.7)
 
 
 def test_it_begins_anew_goes_on_after_a_pause_and_tries_what_it_found() -> None:
@@ -131,7 +131,7 @@ def test_a_stick_interrupts_it_and_half_a_second_later_it_goes_on(stick: str, pl
     assert autotune.is_overridden(v, 0.5 if stick == "climb" else 0.0, True)
     assert t.roll_before.rate_p == ap.params.ATC.RAT_RLL.P
     assert t.roll_before.rate_i == ap.params.ATC.RAT_RLL.I
-    assert (tuple(t.place) == (1.0, 2.0)) == place_moves
+    assert (tuple(t.hold_pos) == (1.0, 2.0)) == place_moves
     for name in ("roll", "pitch", "yaw"):
         setattr(sticks, name, 0.0)
     turn_to(v, 0.4)
@@ -182,12 +182,12 @@ def test_sticks_do_not_interrupt_what_is_not_tuning() -> None:
 def test_it_leans_back_to_its_place_by_the_distance(n: float, e: float, yaw: float, roll: float, pitch: float) -> None:
     v = tuning()
     t = v.autopilot.modes.autotune
-    t.holds_place, t.place = True, Vec2(100.0, -50.0)
+    t.holds_position, t.hold_pos = True, Vec2(100.0, -50.0)
     v.autopilot.estimate.pos = Vec3(100.0 + n, -50.0 + e, -10.0)
     turn_to(v, yaw)
     lean = autotune.hold(v)
     assert (math.degrees(lean.roll), math.degrees(lean.pitch)) == pytest.approx((roll, pitch), abs=1e-6)
-    t.holds_place = False
+    t.holds_position = False
     assert autotune.hold(v) == (0.0, 0.0)
 
 
@@ -207,7 +207,7 @@ def test_far_off_it_turns_so_that_the_tuned_axis_leans_little(
 ) -> None:
     v = tuning(axis)
     t = v.autopilot.modes.autotune
-    t.holds_place, t.place, t.heading = True, Vec2(0.0, 0.0), math.radians(heading)
+    t.holds_position, t.hold_pos, t.heading = True, Vec2(0.0, 0.0), math.radians(heading)
     v.autopilot.estimate.pos = Vec3(0.0, east, -10.0)
     autotune.hold(v)
     assert math.degrees(math.remainder(t.heading - math.radians(turned), 2 * math.pi)) == pytest.approx(0.0, abs=1e-9)

@@ -157,7 +157,7 @@ def test_it_flies_back_to_where_it_saw_its_target(stage: int, height: float) -> 
     v = landing()
     ap = v.autopilot
     ap.modes.land.stage, ap.params.PLND.STRICT = stage, 1.0
-    ap.landing_target.seen_from = ap.landing_target.last_place = Vec3(3.0, 4.0, -10.0)
+    ap.landing_target.seen_from = ap.landing_target.last_pos = Vec3(3.0, 4.0, -10.0)
     goal = precision_land.position_to_try(ap.modes.land, ap.landing_target, ap.params.PLND)
     assert goal.z <= -10.0 and (goal.z < -10.0) == (stage == precision_land.CLIMBING)
     precision_land.fly_back(v)
@@ -225,7 +225,7 @@ def test_where_it_saw_its_target_it_stays() -> None:
     v = landing(10.0)
     ap = v.autopilot
     ap.modes.land.stage = precision_land.RETURNING
-    ap.landing_target.seen_from = ap.landing_target.last_place = Vec3(0.0, 0.0, -10.0)
+    ap.landing_target.seen_from = ap.landing_target.last_pos = Vec3(0.0, 0.0, -10.0)
     assert precision_land.position_to_try(ap.modes.land, ap.landing_target, ap.params.PLND) == (0.0, 0.0, -10.0)
     ticks(v, precision_land.fly_back, 3)
     assert ap.control.pos_d.accel_desired == ap.control.pos_d.vel_desired == 0.0

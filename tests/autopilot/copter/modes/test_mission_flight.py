@@ -33,7 +33,7 @@ def mission(kind: int = kinds.WAYPOINT, **nav: Any) -> Any:
     ap.modes.mission_count, ap.home.is_set = 5, 1
     assert auto.start(v) == ModeResult.ACCEPTED
     PLANNER.begin(ap, v.time_us, Vec3(20.0, 0.0, -10.0))
-    ap.modes.nav.mission_state, ap.modes.nav.has_place = RUNNING, 1
+    ap.modes.nav.mission_state, ap.modes.nav.has_target = RUNNING, 1
     for name, value in nav.items():
         setattr(ap.modes.nav, name, value)
     ap.modes.nav.command_kind = kind
@@ -74,8 +74,8 @@ def test_a_guided_command_begins_its_limits() -> None:
 
 
 def test_a_land_command_flies_to_its_position_or_lands_at_once() -> None:
-    assert begun(kinds.LAND, has_place=1).modes.auto.land_state == auto.FLYING
-    assert begun(kinds.LAND, has_place=0).modes.auto.land_state == auto.DESCENDING
+    assert begun(kinds.LAND, has_target=1).modes.auto.land_state == auto.FLYING
+    assert begun(kinds.LAND, has_target=0).modes.auto.land_state == auto.DESCENDING
 
 
 @pytest.mark.parametrize(("state", "lands"), ((auto.FLYING, False), (auto.DESCENDING, True)))

@@ -47,7 +47,7 @@ def watch(v: Any, seconds: float, thrust: float) -> int:
 def test_without_a_place_it_begins_where_it_is(flying: Any) -> None:
     law.begin(flying)
     assert flying.autopilot.modes.payload_place.stage == law.STARTING
-    flying.autopilot.modes.nav.has_place = True
+    flying.autopilot.modes.nav.has_target = True
     law.begin(flying)
     assert flying.autopilot.modes.payload_place.stage == law.FLYING
 

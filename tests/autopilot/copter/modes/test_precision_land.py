@@ -31,7 +31,7 @@ def landing(status: int = LOST, strict: float = LANDS_LATE) -> Any:
     t, p = ap.landing_target, ap.params.PLND
     p.ENABLED, p.STRICT, p.RET_MAX, p.TIMEOUT = 1.0, strict, 2.0, 4.0
     t.status, t.lost_us = status, v.time_us
-    t.seen_from, t.last_place = Vec3(0.0, 1.0, -6.0), Vec3(3.0, 0.0, 0.0)
+    t.seen_from, t.last_pos = Vec3(0.0, 1.0, -6.0), Vec3(3.0, 0.0, 0.0)
     return v
 
 
@@ -167,7 +167,7 @@ def test_what_is_near(axis: int) -> None:
 def test_how_fast_it_sinks_over_the_target(height, aside, most, options, rate):
     v = landing(FOUND)
     t, p = v.autopilot.landing_target, v.autopilot.params
-    t.place, t.away = Vec3(0.0, aside, height), Vec2(aside, 0.0)
+    t.measured_pos, t.away = Vec3(0.0, aside, height), Vec2(aside, 0.0)
     p.PLND.XY_DIST_MAX, p.PLND.OPTIONS, p.LAND.SPEED = most, float(options), 50.0
     assert precision_land.over_target(t, 1.0, p) == pytest.approx(rate)
 
@@ -231,7 +231,7 @@ def test_over_a_target_that_is_seen_it_sinks_as_that_asks(acquired, repositioned
     v = landing(FOUND)
     ap = v.autopilot
     ap.landing_target.acquired, ap.modes.land.repositioned, ap.modes.land.pause = acquired, repositioned, pause
-    ap.landing_target.place = Vec3(0.0, 0.0, 1.0)
+    ap.landing_target.measured_pos = Vec3(0.0, 0.0, 1.0)
     ap.params.LAND.SPEED = 50.0
     done: list[Any] = []
     monkeypatch.setattr(

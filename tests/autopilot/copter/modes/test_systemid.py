@@ -111,8 +111,8 @@ def test_from_where_it_may_be_entered(axis: int, mode: int, armed: int, landed: 
     assert systemid.start(v) == (ModeResult.INIT_FAILED if why else ModeResult.ACCEPTED)
     assert told(v, systemid.SYSTEM_ID_DID) == [(float(why), 0.0) if why else (0.0, float(axis))]
     if not why:
-        assert (state.time, bool(state.testing), tuple(state.place)) == (0.0, True, (3.0, 4.0))
-        assert bool(state.holds_place) == (14 <= axis <= 19)
+        assert (state.time, bool(state.testing), tuple(state.hold_pos)) == (0.0, True, (3.0, 4.0))
+        assert bool(state.holds_position) == (14 <= axis <= 19)
 
 
 def test_the_chirp_begins_a_second_after_the_mode() -> None:
@@ -226,7 +226,7 @@ def test_in_place_the_chirp_disturbs_what_is_measured_or_moves_the_place(
     monkeypatch.setattr(systemid.position, "update_ne", lambda control, *_: disturbed.append(control.pos_ne.disturbed))
     turn_to(v, 0.5 * math.pi)  # forward is east, right is south
     place, state = v.autopilot.control.pos_ne, v.autopilot.modes.systemid
-    start = tuple(state.place)
+    start = tuple(state.hold_pos)
     systemid.run_at_position(v, axis, 0.4)
     push = (0.0, 0.4) if axis in (15, 17, 19) else (-0.4, 0.0)
     zero = (0.0, 0.0)
@@ -236,7 +236,7 @@ def test_in_place_the_chirp_disturbs_what_is_measured_or_moves_the_place(
     moved = push if axis >= 18 else zero
     assert tuple(state.vel) == pytest.approx(moved, abs=1e-12)
     assert tuple(state.acc) == pytest.approx([x / 0.0025 for x in moved], abs=1e-9)
-    assert [a - b for a, b in zip(state.place, start, strict=True)] == pytest.approx(
+    assert [a - b for a, b in zip(state.hold_pos, start, strict=True)] == pytest.approx(
         [x * 0.0025 for x in moved], abs=1e-12
     )
 
@@ -246,7 +246,7 @@ def test_the_place_moves_with_the_speed_asked_for() -> None:
     state = v.autopilot.modes.systemid
     for _ in range(4):
         systemid.follow_speed(state, Vec2(2.0, -1.0))
-    assert tuple(state.place) == pytest.approx((0.02, -0.01))
+    assert tuple(state.hold_pos) == pytest.approx((0.02, -0.01))
     assert tuple(state.acc) == (0.0, 0.0)
 
 

@@ -100,8 +100,8 @@ def test_it_flies_as_alt_hold_while_it_does_not_tune(change: Any, monkeypatch: A
 def test_with_the_sticks_centred_it_leans_back_to_its_place() -> None:
     v = tuning()
     ap = v.autopilot
-    ap.modes.autotune.phase, ap.modes.autotune.place = gains.FOUND, Vec2(-10.0, 0.0)
-    ap.modes.autotune.holds_place = True
+    ap.modes.autotune.phase, ap.modes.autotune.hold_pos = gains.FOUND, Vec2(-10.0, 0.0)
+    ap.modes.autotune.holds_position = True
     run(v)
     assert math.degrees(ap.control.attitude.target_euler.pitch) == pytest.approx(5.0, abs=0.1)
     ap.modes.pilot.pitch = -0.2
@@ -199,7 +199,7 @@ def test_axes_of_the_position_hold_it_while_they_are_disturbed(axis: int) -> Non
     v = identifying(axis)
     ticks(v, MODE["SYSTEMID"].run)
     ap = v.autopilot
-    assert ap.modes.systemid.holds_place and ap.control.motors.desired_spool == FULL
+    assert ap.modes.systemid.holds_position and ap.control.motors.desired_spool == FULL
     assert ap.control.pos_ne.last_tick == ap.control.pos_d.last_tick == ap.control.tick
     assert ap.modes.systemid.value != 0.0
     assert (ap.modes.systemid.vel.x != 0.0) == (axis == 19), "the speed asked for moves the path"
@@ -210,7 +210,7 @@ def test_other_axes_are_flown_by_hand(axis: int) -> None:
     v = identifying(axis)
     ticks(v, MODE["SYSTEMID"].run)
     ap = v.autopilot
-    assert not ap.modes.systemid.holds_place and ap.control.pos_ne.last_tick != ap.control.tick
+    assert not ap.modes.systemid.holds_position and ap.control.pos_ne.last_tick != ap.control.tick
     assert bool(ap.control.motors.excited) == (axis == 10)
 
 
@@ -257,7 +257,7 @@ def placing(stage: int = payload_place.STARTING) -> Any:
     """In AUTO, placing its load 20 m away or here."""
     v = hovering("AUTO")
     ap = v.autopilot
-    ap.modes.nav.has_place = stage == payload_place.FLYING
+    ap.modes.nav.has_target = stage == payload_place.FLYING
     if stage == payload_place.FLYING:
         PLANNER.begin(ap, v.time_us, Vec3(20.0, 0.0, -10.0))
         PLANNER.start(ap, v.time_us)

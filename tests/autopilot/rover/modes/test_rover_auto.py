@@ -44,7 +44,7 @@ def give(rover: Rover, kind: int, place: tuple[float, float] | None = None, **fi
         PLANNER.begin(rover.ap, int(rover.v.time_us), Vec3(*place, 0.0))
     if place is not None:
         nav.target = (*place, 0.0)
-    nav.has_place = int(place is not None)
+    nav.has_target = int(place is not None)
     for name, value in {"delay": 0.0, "turns": 0.0, **fields}.items():
         setattr(nav, name, value)
     nav.command_kind = kind
@@ -142,7 +142,7 @@ def test_guided_until_its_place_or_limit(rover: Rover) -> None:
     guided_setpoints.set_limits(rover.ap.modes.guided, 0.0, 0.0)
     give(rover, kinds.GUIDED)
     rover.ap.modes.nav.target = (30.0, 0.0, 0.0)
-    rover.ap.modes.nav.has_place = 1
+    rover.ap.modes.nav.has_target = 1
     rover.run(0.1)
     assert drive_to(rover.v, 30.0, 0.0) == CommandResult.OK
     assert seconds_until_complete(rover, 20.0) < 15.0
@@ -222,6 +222,6 @@ def test_guided_within_a_mission_is_done_at_its_place() -> None:
     modes.nav.command_kind, modes.auto.submode = kinds.GUIDED, auto.GUIDED_IN_MISSION
     modes.nav.target = Vec3(10.0, 0.0, 0.0)
     assert not auto.is_done(modes, 1, Vec2(9.0, 0.0), 2.0)
-    modes.nav.has_place = True
+    modes.nav.has_target = True
     assert auto.is_done(modes, 1, Vec2(9.0, 0.0), 2.0)
     assert not auto.is_done(modes, 1, Vec2(7.0, 0.0), 2.0)

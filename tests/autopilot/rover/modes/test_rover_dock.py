@@ -83,7 +83,7 @@ def test_where_it_has_arrived(distance: float, seen: bool, located: bool, arrive
     rover = docking(distance)
     dock.start(rover.v)
     state = rover.ap.modes.dock
-    state.place = Vec2(distance, 0.0)
+    state.pos = Vec2(distance, 0.0)
     rover.ap.landing_target.acquired = seen
     rover.set_estimate(located)
     dock.run(rover.v)
@@ -91,7 +91,7 @@ def test_where_it_has_arrived(distance: float, seen: bool, located: bool, arrive
     assert told(rover, DOCK_DID) == ([(dock.ARRIVED, 0.0)] if arrives else [])
     dock.run(rover.v)
     assert told(rover, DOCK_DID) == []
-    assert dock.destination(rover.ap.modes) == (POSITION_TO_HOLD, state.place)
+    assert dock.destination(rover.ap.modes) == (POSITION_TO_HOLD, state.pos)
 
 
 @pytest.mark.parametrize(

@@ -166,7 +166,7 @@ def test_when_a_command_is_done(kind: int, fields: dict[str, Any], is_done: bool
     ("place", "pos", "is_done"), ((1, Vec2(8.0, 0.0), True), (1, Vec2(7.9, 0.0), False), (0, Vec2(10.0, 0.0), False))
 )
 def test_guided_in_a_mission_ends_at_its_position(place: int, pos: Vec2, is_done: bool) -> None:
-    got = done(kinds.GUIDED, auto.GUIDED_IN_MISSION, pos=pos, has_place=place, target=Vec3(10.0, 0.0, 0.0))
+    got = done(kinds.GUIDED, auto.GUIDED_IN_MISSION, pos=pos, has_target=place, target=Vec3(10.0, 0.0, 0.0))
     assert got == is_done
 
 
@@ -209,7 +209,7 @@ def test_a_mission_takes_a_new_speed_where_there_is_one(rover: Rover, submode: i
 
 def test_where_it_drives_to_is_that_of_what_it_does() -> None:
     modes = Modes()
-    modes.number, modes.circle.target, modes.loiter.place = AUTO, Vec2(1.0, 2.0), Vec2(3.0, 4.0)
+    modes.number, modes.circle.target, modes.loiter.hold_pos = AUTO, Vec2(1.0, 2.0), Vec2(3.0, 4.0)
     wanted = {auto.CIRCLING: circle.destination(modes), auto.LOITERING: loiter.destination(modes)}
     wanted |= {auto.ON_PATH: auto.end_of_path(modes), auto.RETURNING: auto.end_of_path(modes)}
     wanted |= {auto.GUIDED_IN_MISSION: guided.destination(modes), auto.STOPPED: no_destination(modes)}

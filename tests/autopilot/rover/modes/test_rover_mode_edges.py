@@ -48,7 +48,7 @@ def test_the_way_back_of_loiter(
     """LOIT_TYPE; 4 m beyond LOIT_RADIUS 2 m with LOIT_SPEED_GAIN 0.25 are 1 m/s."""
     p, state = rover.ap.params, LoiterState()
     p.LOIT.TYPE, p.LOIT.RADIUS, p.LOIT.SPEED_GAIN = float(kind), 2.0, 0.25
-    state.place, state.distance = Vec2(*place), math.hypot(*place)
+    state.hold_pos, state.distance = Vec2(*place), math.hypot(*place)
     loiter.aim(state, ZERO2, yaw, p)
     assert abs(math.remainder(math.degrees(state.heading) - heading, 360.0)) == pytest.approx(0.0, abs=1e-6)
     assert state.speed == pytest.approx(speed)
@@ -59,7 +59,7 @@ def test_within_loit_radius_it_stays(rover: Rover, away: float, drives: bool) ->
     rover.ap.params.LOIT.RADIUS = 2.0
     assert request(rover.v, LOITER, ModeReason.GCS) == 0
     state = rover.ap.modes.loiter
-    state.place, state.speed = Vec2(away, 0.0), 3.0
+    state.hold_pos, state.speed = Vec2(away, 0.0), 3.0
     rover.ap.control.speed.last_tick = -1000
     loiter.run(rover.v)
     assert (state.speed > 0.0) == drives and state.distance == pytest.approx(away)
