@@ -196,9 +196,7 @@ def test_one_that_no_longer_sinks_stands_and_is_held_level(
 
 
 @pytest.mark.parametrize(("px4", "pause_us"), [(False, 1_000_000), (True, 200_000)])
-def test_it_goes_back_until_it_is_within_a_metre(
-    px4: bool, pause_us: int, count: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_goes_back_until_it_is_within_a_metre(px4: bool, pause_us: int, monkeypatch: pytest.MonkeyPatch) -> None:
     link = Link()
     made = vehicles(link, monkeypatch, px4=px4)
     link.after_pause = lambda number: link.inbox.position.__setitem__(
