@@ -14,6 +14,7 @@ from sitl.autopilot.events import emit
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.navigation.state import RUNNING, STOPPED
 from sitl.autopilot.rover.modes import guided as guided_mode
 from sitl.autopilot.rover.modes.guided import GUIDED_REACHED, GUIDED_TIMEOUT
 from sitl.autopilot.rover.modes.rtl import DESTINATION_REACHED
@@ -281,3 +282,21 @@ def test_return_to_launch(rover: FirmwareBench) -> None:
     rover.ready()
     assert rover.command(20) == ACCEPTED and rover.autopilot.mode() == RTL
     assert HOME[2] == rover.vehicle.v.autopilot.home.alt
+
+
+@pytest.mark.parametrize("items", [SQUARE, ()])
+def test_mission_start_in_auto_starts_a_mission_that_is_there_and_has_stopped(
+    copter: FirmwareBench, items: Any
+) -> None:
+    """One that is under way goes on."""
+    copter.ready()
+    ap = copter.vehicle.v.autopilot
+    if items:
+        copter.vehicle.sequencer.set_mission(copter.vehicle.v, Mission(items))
+    ap.modes.number, nav = 3, ap.modes.nav
+    nav.mission_state = STOPPED
+    assert copter.command(300) == (ACCEPTED if items else FAILED)
+    if items:
+        assert nav.mission_state == RUNNING and nav.command_seq == 1
+        before = nav.mission_events
+        assert copter.command(300) == ACCEPTED and nav.mission_events == before and nav.command_seq == 1

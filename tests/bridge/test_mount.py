@@ -178,3 +178,15 @@ def test_missions_turn_it() -> None:
     assert pulses(b)[:2] == (1600, 1536)
     b.bridge.carry_out(MissionItem(PITCH_YAW, p1=-20.0, p2=30.0))
     assert pulses(b)[:2] == (1566, 1609)
+
+
+@pytest.mark.parametrize("mode", [2, 3, 4, 6])
+def test_a_gimbal_that_nobody_has_told_anything_looks_straight_ahead(mode: int) -> None:
+    """MNT1_DEFLT_MODE: angles of MAVLink, sticks, a location, home; none of them is there."""
+    vehicle = FakeVehicle()
+    b = bench(vehicle, MNT1_DEFLT_MODE=float(mode))
+    b.run(0.1)
+    m, euler = told(b)
+    if mode == 2:
+        assert euler == pytest.approx((0.0, 0.0, 0.0), abs=1e-6) and m.flags == LEVEL | FROM_NOSE
+    assert all(map(math.isfinite, euler))

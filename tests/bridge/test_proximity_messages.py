@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from sitl.autopilot import arming_checks
 from sitl.autopilot.avoidance.proximity import MAVLINK
 from sitl.autopilot.params.firmware_parameters import Parameters
+from sitl.core.vectors import Quat, Vec3
 from tests.bridge.fakes import Bench, FakeRover
 
 PROXIMITY = mavlink.MAV_SYS_STATUS_SENSOR_PROXIMITY
@@ -148,3 +149,59 @@ def test_any_place_leaves_a_state_that_can_be_told(bench: Bench, x: float, y: fl
     v = looking(bench)
     sees(bench, place(x, y, z, longest))
     assert all(math.isfinite(d) for d in v.autopilot.proximity.distance)
+
+
+# ---------------------------------------------------------------- increments, and the database of objects
+
+
+def older(values: list[int], step: int, fine: float = 0.0) -> Any:
+    """A sender that knows whole degrees alone, or ``fine`` ones besides."""
+    readings = values + [NOTHING] * (72 - len(values))
+    return mavlink.MAVLink_obstacle_distance_message(0, 0, readings, step, 0, 1000, fine, 0.0, 12)
+
+
+@pytest.mark.parametrize(
+    ("message", "expected"),
+    [
+        (older([300, 400], 45), {0: 300, 1: 400}),
+        (older([300, 400], 45, 90.0), {0: 300, 2: 400}),  # increment_f counts where it is given
+        (older([300, 400], 0, -90.0), {0: 300, 6: 400}),  # counter-clockwise
+        (older([300, 400], 0), {}),
+        (older([500] * 45 + [300], 1), {0: 500, 1: 300}),
+        (older([500] * 45 + [300], 0, 1.0), {0: 500, 1: 300}),
+    ],
+)
+def test_increments_are_whole_degrees_unless_finer_ones_are_given(
+    bench: Bench, message: Any, expected: dict[int, int]
+) -> None:
+    looking(bench)
+    assert sees(bench, message) == expected
+
+
+@pytest.mark.parametrize(
+    ("message", "positions"),
+    [
+        (distances([250], 10, 90.0, 1000), [(100.0, 202.5)]),
+        (distances([250, NOTHING, 400], 90, 0.0, 1000), [(102.5, 200.0), (96.0, 200.0)]),
+        (one(2, 300), [(100.0, 203.0)]),
+        (place(0.0, -4.0, 0.0), [(100.0, 196.0)]),
+        (distances([1100], 10, 0.0, 1000), []),
+    ],
+)
+@pytest.mark.parametrize(("kind", "known", "kept"), [(1.0, 1, True), (2.0, 1, False), (1.0, 0, False)])
+def test_objects_are_kept_where_they_were_seen_for_bendy_ruler(
+    bench: Bench, message: Any, positions: Any, kind: float, known: int, kept: bool
+) -> None:
+    """OA_TYPE 1; the vehicle is level, looks north, and is 100 m north and 200 m east of its origin."""
+    v = looking(bench)
+    ap = v.autopilot
+    ap.params.OA.TYPE = kind
+    ap.estimate.q, ap.estimate.pos, ap.estimate.position_ok = Quat(1.0, 0.0, 0.0, 0.0), Vec3(100.0, 200.0, -5.0), known
+    ap.objects.zero()
+    bench.ask(message)
+    found = [
+        (float(ap.objects.north[k]), float(ap.objects.east[k]))
+        for k in range(len(ap.objects.north))
+        if ap.objects.until_ms[k]
+    ]
+    assert found == [pytest.approx(at, abs=0.01) for at in (positions if kept else [])]

@@ -274,3 +274,21 @@ def test_a_message_that_is_left_out_is_told_once(bench: Bench) -> None:
     for _ in range(3):
         assert bench.bridge.send_now(bench.bridge.channels[0], kind.id)
     assert len(bench.bridge.dropped) == 1 and "HEARTBEAT" in bench.bridge.dropped[0]
+
+
+@pytest.mark.parametrize(
+    ("failsafe", "value", "critical"),
+    [
+        ("gcs", 1, True), ("radio", 1, True), ("battery", 1, True), ("battery", 2, True), ("ekf", 1, True),
+        ("battery", 0, False),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("landed", [0, 1])
+def test_a_vehicle_in_a_failsafe_is_critical(
+    bench: Bench, failsafe: str, value: int, critical: bool, landed: int
+) -> None:
+    """MAV_STATE_CRITICAL; else MAV_STATE_STANDBY on the ground, MAV_STATE_ACTIVE in the air."""
+    ap = bench.vehicle.v.autopilot
+    ap.arming.landed = landed
+    setattr(ap.modes.failsafe, failsafe, value)
+    assert get(bench, "HEARTBEAT").system_status == (5 if critical else 3 if landed else 4)

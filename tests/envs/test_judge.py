@@ -14,7 +14,7 @@ import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.judge import ESTIMATE, TRUTH, Judge
 from sitl.envs.targets.target_task import nearness
-from sitl.envs.tasks_v1 import HOVER_HALF, worst_of
+from sitl.envs.tasks_v1 import GOAL, HOVER_HALF, worst_of
 
 CONTINUOUS = [name for name in ids.NEW if "Discrete" not in name]
 
@@ -128,4 +128,5 @@ def test_ending_early_is_worth_less_than_whatever_else_until_the_time_limit(name
         worst = worst_of(task, limit * env.unwrapped.step_time)
         assert task.crash_reward < worst and task.out_reward < worst
         assert getattr(task, "lost_reward", worst - 1.0) < worst or task.lost > 1e6
+        assert min(task.crash_reward, task.out_reward) > worst - GOAL, "or who has not learnt yet does not dare to try"
     env.close()

@@ -146,3 +146,10 @@ def test_nobody_knows_the_truth_of_a_vehicle_elsewhere(part):
             "sitl/Navigate-v1", robot="erle_rover", world="maze_erlerover", observation=[part],
             connection="udp:127.0.0.1:1",
         )  # fmt: skip
+
+
+@pytest.mark.parametrize("value", [-0.1, 1.1e6, math.nan, [0.1, -0.1], [[0.1, 0.1], [0.1, 0.1]], "much", [0.1, "x"]])
+@pytest.mark.parametrize("what", ["noise", "bias"])
+def test_sizes_are_one_number_or_one_for_each_column(what, value):
+    with pytest.raises(EnvOptionError, match=r"must be 0 \.\. 1e6, or one such number for each column"):
+        Sensed("velocity", **{what: value})

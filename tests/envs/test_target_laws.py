@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sitl.envs.targets import hold, landing, moving, parking
+from sitl.envs.tasks_v1 import TRACK
 from tests.envs.test_task_laws import AXES, FLAT, flags, outcome, rows
 
 
@@ -253,3 +254,13 @@ def test_parking_pays_the_way_and_the_turn() -> None:
     assert left[0] == pytest.approx(2.0) and found.rewards[0] == pytest.approx(10.0 + 5.0 - 0.1)
     assert found.paid[:4, 0].tolist() == pytest.approx([2.0 * (3.0 - 1.0), 5.0 - 4.0, -0.1, 0.0])
     assert park(x=1.0, crashed=1)[0].paid[:4, 0].tolist() == [0.0] * 4
+
+
+def test_the_track_is_an_oval_of_six_gates_that_are_flown_through_counter_clockwise() -> None:
+    """24 m wide and 16 m long about a point 10 m ahead; each gate looks along the oval."""
+    assert len(TRACK) == 6
+    angles = [math.atan2(gate.y / 12.0, (gate.x - 10.0) / 8.0) for gate in TRACK]
+    assert np.diff(np.degrees(np.unwrap(angles))) == pytest.approx([60.0] * 5) and angles[2] == pytest.approx(0.0)
+    for gate, angle in zip(TRACK, angles, strict=True):
+        assert math.hypot((gate.x - 10.0) / 8.0, gate.y / 12.0) == pytest.approx(1.0)
+        assert math.cos(gate.yaw - angle - math.pi / 2) == pytest.approx(1.0) and 1.5 <= gate.z <= 3.5

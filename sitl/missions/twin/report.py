@@ -101,13 +101,14 @@ def lines(twin: Twin, verdicts: Sequence[Verdict]) -> list[str]:
         parts.append((f"segments of {SEGMENT_S:g} s", twin.segments))
     if twin.difference:
         parts.append(("changed twin - twin", twin.difference))
-    head = f"{'':40}" + "".join(f"{title:>22}" for title, _ in parts)
-    found += [head, f"{'':40}" + f"{'RMS':>12}{'VAF [%]':>10}" * len(parts)]
+    width = max((len(one.quantity.title) for one in twin.whole), default=0)
+    head = " " * (width + 8)
+    found += [head + "".join(f"{title:>22}" for title, _ in parts), head + f"{'RMS':>12}{'VAF [%]':>10}" * len(parts)]
     for one in twin.whole:
         q = one.quantity
         cells = [next((a for a in part if a.quantity.name == q.name), None) for _, part in parts]
         found.append(
-            f"{q.title:32} {'[' + q.unit + ']':7}"
+            f"{q.title:{width}} {'[' + q.unit + ']':7}"
             + "".join(f"{_number(a.rms):>12}{_vaf(a.vaf):>10}" if a is not None else " " * 22 for a in cells)
         )
     found += [f"  {text}" for text in twin.findings]

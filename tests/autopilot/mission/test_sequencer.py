@@ -42,7 +42,7 @@ from sitl.autopilot.navigation.state import (
 from sitl.autopilot.navigation.state import TAKEOFF as TAKE_OFF
 from sitl.autopilot.notes import CurrentChanged, ItemReached, Text
 from sitl.autopilot.rover.mission import COMMANDS as ROVER
-from sitl.core.mavlink import MavCmd
+from sitl.core.mavlink import MavCmd, MavFrame
 from sitl.core.vectors import Vec3
 from sitl.vehicle.copter import Copter
 
@@ -555,3 +555,33 @@ def test_another_mission_goes_on_at_the_number_where_the_one_before_was_left() -
     p.sequencer.set_mission(p.v, Mission((home_item(LAT, LON, ALT), WP)))
     p.start()
     assert p.nav.command_seq == 1
+
+
+OVER_GROUND = MissionItem(MavCmd.NAV_WAYPOINT, MavFrame.GLOBAL_TERRAIN_ALT, x=LAT + 1000, y=LON, z=10.0)
+RETURN = MissionItem(MavCmd.DO_RETURN_PATH_START, x=LAT + 1000, y=LON, z=10.0)
+LANDING = MissionItem(MavCmd.DO_LAND_START)
+
+
+@pytest.mark.parametrize(
+    ("items", "takes_off", "lands", "returns", "over_ground"),
+    [
+        ((TAKEOFF, WP), True, False, False, False),
+        ((WP, TAKEOFF), False, False, False, False),
+        ((SPEED, TAKEOFF), True, False, False, False),
+        ((TAKEOFF, WP, LANDING, WP), True, True, False, False),
+        ((TAKEOFF, RETURN, WP), True, False, True, False),
+        ((TAKEOFF, WP, OVER_GROUND), True, False, False, True),
+        ((TAKEOFF, WP, SPEED._replace(frame=MavFrame.GLOBAL_TERRAIN_ALT)), True, False, False, False),  # has no height
+    ],
+)
+def test_the_vehicle_knows_what_its_mission_needs(
+    items: tuple[MissionItem, ...], takes_off: bool, lands: bool, returns: bool, over_ground: bool
+) -> None:
+    """Whether AUTO may start on the ground, AUTO_RTL has where to go, heights need terrain data; MIS_TOTAL."""
+    vehicle = Vehicle()
+    vehicle.sequencer.set_mission(vehicle.v, Mission((home_item(LAT, LON, ALT), *items)))
+    modes = vehicle.v.autopilot.modes
+    assert (modes.mission_takes_off, modes.mission_lands, modes.mission_returns, modes.mission_over_ground) == (
+        takes_off, lands, returns, over_ground,
+    )  # fmt: skip
+    assert modes.mission_count == vehicle.v.autopilot.params.MIS.TOTAL == len(items) + 1

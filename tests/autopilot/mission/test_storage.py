@@ -70,3 +70,14 @@ def test_what_was_read_back_is_kept_as_it_is(command: int, values: tuple[float, 
         p3 = float(round(abs(p3)) % 600)
     once = stored(MissionItem(command, 3, p1, p2, p3, p4, 350_000_001, -1_490_000_001, z))
     assert stored(once) == once
+
+
+@pytest.mark.parametrize(
+    ("radius", "timed", "unlimited"),
+    [(30.4, 1.0, 30.0), (0.5, 1.0, 0.0), (0.0, 1.0, 0.0), (-0.5, -1.0, 0.0), (-30.4, -1.0, -30.0)],
+)
+def test_of_a_stay_for_a_time_the_direction_is_kept_of_one_without_end_the_radius(
+    radius: float, timed: float, unlimited: float
+) -> None:
+    for command, kept in ((MavCmd.NAV_LOITER_TIME, timed), (MavCmd.NAV_LOITER_UNLIM, unlimited)):
+        assert stored(MissionItem(command, 3, p1=5.0, p3=radius)).p3 == kept

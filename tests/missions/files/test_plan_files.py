@@ -284,3 +284,18 @@ def test_no_text_breaks_it(text: str) -> None:
     """Any text is a mission or a MissionFileError."""
     for head in ("", "QGC WPL 110\n"):
         same_when_saved(wpl, head + text, "m.waypoints")
+
+
+@pytest.mark.parametrize(
+    ("given", "cruise", "hover"),
+    [
+        ({}, 10.0, 5.0),
+        ({"cruise_speed": 3.0}, 3.0, 5.0),
+        ({"hover_speed": 7.0}, 10.0, 7.0),
+        ({"hover_speed": 0.5}, 10.0, 0.5),
+    ],
+)
+def test_a_plan_says_both_speeds(given: dict[str, float], cruise: float, hover: float) -> None:
+    mission = Mission((home_item(0, 0, 0.0), MissionItem(MavCmd.NAV_TAKEOFF, 3, z=5.0)))
+    written = json.loads(writer.write(MissionFile(mission, **given)))["mission"]  # type: ignore[arg-type]
+    assert (written["cruiseSpeed"], written["hoverSpeed"]) == (cruise, hover)

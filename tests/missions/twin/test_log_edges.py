@@ -13,6 +13,7 @@ from sitl.autopilot.copter.firmware import FIRMWARE
 from sitl.logs.tlog import LogError
 from sitl.missions.twin import gaps, taken_parameters
 from sitl.missions.twin.flight_log import FlightLog, TwinError
+from sitl.missions.twin.streams import QUANTITIES
 from tests.missions.twin.conftest import FORMATS, Log
 
 
@@ -183,3 +184,14 @@ def test_a_throttle_raised_by_more_than_fifty_microseconds_is_a_start(written: L
     assert gaps.uncommanded_start(FlightLog(written()), [(-1.0, "AUTO")], [], two) == 0.0, "no throttle channel"
     later = (np.array([2.0, 3.0, 5.0]), pulses)
     assert gaps.uncommanded_start(FlightLog(written()), [(-1.0, "AUTO")], [], later) == 0.0, "after it lifted"
+
+
+@pytest.mark.parametrize(("letters", "volts"), [("Qff", 12.0), ("Qhh", None)])
+def test_the_battery_of_arducopter_3_is_one(
+    written: Log, monkeypatch: pytest.MonkeyPatch, letters: str, volts: float | None
+) -> None:
+    """CURR of 3.4 and 3.5 holds volts; before, hundredths of them."""
+    monkeypatch.setitem(FORMATS, "CURR", (letters, "TimeUS,Volt,Curr"))
+    log = FlightLog(written(("CURR", 21_000_000, 12, 3), ("CURR", 22_000_000, 12, 3)))
+    found = next(one for one in QUANTITIES["copter"] if one.name == "voltage").of(log)
+    assert (None if found is None else float(found.values[0, 0])) == volts

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The connection to an autopilot that is another program: when it is lost, why, and what of its flight is kept.
+
+Program, host and stream are scripts, and the wall clock is the test's.
+"""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from sitl.envs.mavlink import foreign
+from sitl.envs.mavlink.foreign import Foreign
+from sitl.envs.mavlink.last_messages import StepTelemetry
+from sitl.errors import LinkLostError
+from sitl.foreign.process import AutopilotEndedError
+
+
+class Process:
+    """The program; ``ended``: why it has ended."""
+
+    def __init__(self, ended: str = "") -> None:
+        self.ended, self.stopped = ended, False
+
+    def check(self) -> None:
+        if self.ended:
+            raise AutopilotEndedError(self.ended)
+
+    def last_output(self) -> str:
+        return "Init"
+
+    def stop(self) -> None:
+        self.stopped = True
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """Wall time, which passes while somebody sleeps."""
+    found = SimpleNamespace(now=100.0, monotonic=lambda: found.now)
+
+    def sleep(seconds: float) -> None:
+        found.now += seconds
+
+    found.sleep = sleep
+    monkeypatch.setattr(foreign, "time", found)
+    return found
+
+
+def link(process: Process | None = None, **given: Any) -> Any:
+    found: Any = object.__new__(Foreign)
+    found.process, found.patience, found._connection, found._face, found._port = process, 5.0, "tcp:1", None, None
+    found.stream, found.heard, found.tapped = None, [], []
+    found.inbox = SimpleNamespace(feed=found.heard.append)
+    found.tap = found.tapped.append
+    vars(found).update(given)
+    return found
+
+
+# ---------------------------------------------------------------- opening
+
+
+@pytest.mark.parametrize(("tries", "slept"), [(1, 0), (4, 3)])
+def test_a_port_that_is_not_there_yet_is_tried_again(
+    tries: int, slept: int, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    def open_stream(name: str) -> Any:
+        asked.append(name)
+        if len(asked) < tries:
+            raise LinkLostError("refused")
+        return "stream"
+
+    monkeypatch.setattr(foreign, "open_stream", open_stream)
+    monkeypatch.setattr(foreign, "Endpoint", lambda stream: ("endpoint", stream))
+    closed: list[bool] = []
+    made = link(stream=SimpleNamespace(close=lambda: closed.append(True)))
+    made._connect()
+    assert asked == ["tcp:1"] * tries and made.stream == "stream" and made.endpoint == ("endpoint", "stream")
+    assert closed == [True] and clock.now == pytest.approx(100.0 + 0.05 * slept)
+
+
+@pytest.mark.parametrize(("process", "seconds"), [(None, 5.0), (Process(), foreign._START_S)])
+def test_one_that_nobody_opens_is_lost_after_a_while(
+    process: Process | None, seconds: float, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(name: str) -> Any:
+        raise LinkLostError("refused")
+
+    monkeypatch.setattr(foreign, "open_stream", refuse)
+    with pytest.raises(LinkLostError, match="refused"):
+        link(process)._connect()
+    assert clock.now - 100.0 == pytest.approx(max(seconds, 5.0), abs=0.06)
+
+
+def test_a_program_that_has_ended_is_not_waited_for(clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(name: str) -> Any:
+        raise LinkLostError("refused")
+
+    monkeypatch.setattr(foreign, "open_stream", refuse)
+    with pytest.raises(LinkLostError, match=r"ended with exit code 1: no such airframe"):
+        link(Process("ended with exit code 1: no such airframe"))._connect()
+    assert clock.now == 100.0
+
+
+# ---------------------------------------------------------------- hearing
+
+
+def test_what_it_says_is_heard_and_passed_on() -> None:
+    said = [b"abc", b"", b"d"]
+    made = link(stream=SimpleNamespace(receive=lambda: said.pop(0)))
+    for _ in range(3):
+        made._hear()
+    assert made.heard == made.tapped == [b"abc", b"d"]
+    link()._hear()
+
+
+@pytest.mark.parametrize(
+    ("process", "error", "connects"),
+    [(None, "gone", 0), (Process("ended: crashed"), "ended: crashed", 0), (Process(), None, 1)],
+)
+def test_a_port_that_closes_is_a_reboot_of_a_program_that_runs(
+    process: Process | None, error: str | None, connects: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lost() -> bytes:
+        raise LinkLostError("gone")
+
+    connected: list[Any] = []
+    monkeypatch.setattr(Foreign, "_connect", lambda self: connected.append(self))
+    made = link(process, stream=SimpleNamespace(receive=lost))
+    if error is None:
+        made._hear()
+    else:
+        with pytest.raises(LinkLostError, match=error):
+            made._hear()
+    assert len(connected) == connects and made.heard == []
+
+
+# ---------------------------------------------------------------- waiting
+
+
+def test_physics_that_nobody_asks_is_a_link_that_is_lost(clock: SimpleNamespace) -> None:
+    def listen() -> bool:
+        clock.now += 0.5
+        return False
+
+    with pytest.raises(LinkLostError, match="tcp:1 is lost: the autopilot has not asked the physics for 5 s"):
+        link(host=SimpleNamespace(listen=listen))._await()
+    assert clock.now - 100.0 == pytest.approx(6.0, abs=1.0)
+    link(host=SimpleNamespace(listen=lambda: True))._await()
+    with pytest.raises(LinkLostError, match="ended: x"):
+        link(Process("ended: x"), host=SimpleNamespace(listen=listen))._await()
+
+
+@pytest.mark.parametrize(("process", "said"), [(None, ""), (Process(), "; it said: Init")])
+def test_without_a_heartbeat_it_is_not_found(process: Any, said: str, clock: Any, monkeypatch: Any) -> None:
+    made = link(process, host=SimpleNamespace(before_boot_us=1_000_000, time_us=0))
+    made.inbox.system = 9
+    ran: list[int] = []
+
+    def run(us: int) -> None:
+        ran.append(us)
+        made.host.time_us += us
+
+    made.run = run
+    with pytest.raises(LinkLostError) as told:
+        made.find()
+    simulated = foreign._HEARTBEAT_US // 1_000_000
+    assert str(told.value) == (
+        f"connection tcp:1: no HEARTBEAT in {simulated} simulated seconds, {simulated} of the wall clock{said}"
+    )
+    assert made.time_us == 1_000_000 + sum(ran) and clock.now - 100.0 == pytest.approx(simulated), "not faster"
+    made.run = lambda us: setattr(made.inbox, "system", 1)
+    made.find()
+
+
+# ---------------------------------------------------------------- what is kept
+
+
+def test_scans_and_touches_are_read_off_the_physics_when_they_are_new() -> None:
+    inbox = StepTelemetry(3)
+    inbox.angles = np.zeros(3)
+    made = link(inbox=inbox, _scans=4, _hits=2)
+    made._sensors = SimpleNamespace(lidar_count=4, lidar_ranges=np.array([1.0, 2.0, 3.0, 4.0]))
+    made._obstacles = SimpleNamespace(hit_count=2)
+    made._look()
+    assert (inbox.scans, inbox.hits) == (0, 0) and np.isinf(inbox.scan).all()
+    made._sensors.lidar_count, made._obstacles.hit_count = 5, 5
+    made._look()
+    assert (inbox.scans, inbox.hits) == (1, 3) and inbox.scan[:3].tolist() == [1.0, 2.0, 3.0]
+    assert np.isinf(inbox.scan[3:]).all()
+    made._obstacles.hit_count = 0
+    made._look()
+    assert (inbox.scans, inbox.hits) == (1, 3), "another plant counts anew"
+
+
+def test_everything_is_closed_at_the_end() -> None:
+    closed: list[str] = []
+    parts = {name: SimpleNamespace(close=lambda name=name: closed.append(name)) for name in ("stream", "host", "plant")}
+    process = Process()
+    link(process, **parts).close()
+    assert closed == ["stream", "host", "plant"] and process.stopped
+    closed.clear()
+    link(**{**parts, "stream": None}).close()
+    assert closed == ["host", "plant"]
