@@ -20,8 +20,9 @@ BASES = {True: "skid_rover", False: "erle_rover"}
 """Whether it skids -> the airframe that lends what no property shows."""
 _NO_SLIP = 1000.0
 _GYRATION = 0.2
-"""Square of a rover's radius of gyration about the vertical by that of its wheelbase, or of its track where it skids: it
-counts only on slippery ground, where tyres turn the vehicle slowly. The package's airframes have 0.11 to 0.26.
+"""Square of the radius of gyration about the vertical by that of the wheelbase, or of the track where the rover skids.
+
+It counts only on slippery ground, where tyres turn the vehicle slowly. The package's airframes have 0.11 to 0.26.
 """
 
 Array = np.ndarray[Any, Any]

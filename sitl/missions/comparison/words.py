@@ -24,22 +24,30 @@ def when(pair: Pair, t: float) -> str:
     return f"{t - since:.1f} s after {what}"
 
 
-def direction(gap: np.ndarray) -> str:
-    """ "0.80 m east", "0.51 m south and 0.43 m above": the parts that matter of a NED vector [m]."""
+def direction(gap: np.ndarray, of: str) -> str:
+    """ "0.80 m east of the golden path", "0.51 m south of and 0.43 m above the golden path": the parts that matter.
+
+    Args:
+        gap: NED (3,) [m].
+        of: what it is from.
+    """
     size = float(lengths(gap))
     parts = [
         f"{abs(value):.2f} m {names[0 if value > 0 else 1]}"
         for value, names in zip(gap, _NED, strict=True)
         if abs(value) >= 0.4 * size
     ]
-    return " and ".join(parts)
+    is_vertical = [part.endswith(_NED[2]) for part in parts]
+    if any(is_vertical) and len(parts) > 1:
+        parts = [" and ".join(parts[:-1]) + " of", parts[-1]]
+    return " and ".join(parts) + (" " if any(is_vertical) else " of ") + of
 
 
 def deviation(series: Series, k: int) -> str:
     """Sample ``k`` of a difference, in words."""
     value = float(series.values[k])
     if series.gap is not None:
-        return direction(series.gap[k]) + (" of the golden " + ("position" if series.name == "position" else "path"))
+        return direction(series.gap[k], "the golden " + ("position" if series.name == "position" else "path"))
     size, later = abs(value), "later" if value > 0 else "earlier"
     return {
         "altitude": f"{size:.2f} m {'above' if value > 0 else 'below'} the golden path",

@@ -43,16 +43,17 @@ def changed(since: float = 0.0, **by: float) -> Track:
 @pytest.mark.parametrize(
     ("gap", "text"),
     [
-        ((0.8, 0.0, 0.0), "0.80 m north"),
-        ((-0.8, 0.1, 0.0), "0.80 m south"),
-        ((0.0, 0.51, 0.43), "0.51 m east and 0.43 m below"),
-        ((0.0, -0.51, -0.43), "0.51 m west and 0.43 m above"),
-        ((1.0, 0.39, 0.0), "1.00 m north"),
-        ((1.0, 1.0, 1.0), "1.00 m north and 1.00 m east and 1.00 m below"),
+        ((0.8, 0.0, 0.0), "0.80 m north of it"),
+        ((-0.8, 0.1, 0.0), "0.80 m south of it"),
+        ((0.0, 0.51, 0.43), "0.51 m east of and 0.43 m below it"),
+        ((0.0, -0.51, -0.43), "0.51 m west of and 0.43 m above it"),
+        ((1.0, 0.39, 0.0), "1.00 m north of it"),
+        ((0.0, 0.0, -0.05), "0.05 m above it"),
+        ((1.0, 1.0, 1.0), "1.00 m north and 1.00 m east of and 1.00 m below it"),
     ],
 )
 def test_the_parts_of_a_gap_that_matter(gap: Any, text: str) -> None:
-    assert words.direction(np.array(gap)) == text
+    assert words.direction(np.array(gap), "it") == text
 
 
 @pytest.mark.parametrize(
