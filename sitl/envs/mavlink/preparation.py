@@ -195,7 +195,7 @@ def prepare(link: Connection, guided: int, take_off: float, hold_sticks: Callabl
     if inbox.origin is None:
         raise NotReadyError(f"{link.name}: the vehicle does not send GPS_GLOBAL_ORIGIN")
     if link.is_exact:
-        link.run(ALIGN_US - 1000 * int(inbox.position[0]) % ALIGN_US - _TENTH)
+        link.run((-1000 * int(inbox.position[0]) - _TENTH) % ALIGN_US)
     hold_sticks()
     scans = inbox.scans
     link.run(_TENTH)

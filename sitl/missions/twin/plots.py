@@ -73,15 +73,11 @@ def _thin(*lines: Array) -> tuple[Array, ...]:
     return tuple(line[::step] for line in lines)
 
 
-def flown(twin: Twin, names: Sequence[str] = ()) -> bytes:
-    """Each quantity over time, logged, of the twin and of the changed twin. PNG bytes.
-
-    Args:
-        twin: the flights.
-        names: of quantities; none: all that move over time.
-    """
+def flown(twin: Twin) -> bytes:
+    """Each quantity that moves over time, logged, of the twin and of the changed twin. PNG bytes; empty: there is none."""
     shown = [one for one in twin.whole if one.quantity.name not in _HIDDEN and not one.quantity.is_asked]
-    shown = [one for one in shown if one.quantity.name in names or not names]
+    if not shown:
+        return b""
     figure = new_figure(_WIDE, _ROW * len(shown) + 0.6)
     axes = np.atleast_1d(figure.subplots(len(shown), 1, sharex=True))
     for axis, one in zip(axes, shown, strict=True):
@@ -113,8 +109,10 @@ def _label(quantity: Quantity) -> str:
 
 
 def opened(twin: Twin) -> bytes:
-    """Open segments: each begins in the logged state. PNG bytes."""
+    """Open segments: each begins in the logged state. PNG bytes; empty: no quantity has any."""
     shown = [one for name in _OPEN if (one := _of(twin.segments, name)) is not None]
+    if not shown:
+        return b""
     figure = new_figure(_WIDE, _ROW * len(shown) + 0.6)
     axes = np.atleast_1d(figure.subplots(len(shown), 1, sharex=True))
     for axis, one in zip(axes, shown, strict=True):

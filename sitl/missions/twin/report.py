@@ -211,12 +211,16 @@ def _pictures(twin: Twin) -> Iterable[str]:
     try:
         from . import plots
 
-        drawn = [("The path, from above", plots.plan(twin)), ("The flight over time", plots.flown(twin))]
-        if twin.segments:
-            drawn.append(("Open segments: flown on from the logged state", plots.opened(twin)))
+        drawn = [
+            ("The path, from above", plots.plan(twin)),
+            ("The flight over time", plots.flown(twin)),
+            ("Open segments: flown on from the logged state", plots.opened(twin)),
+        ]
     except MissingExtra as error:
         yield f"<h2>Pictures</h2><section><p>{escape(str(error))}</p></section>"
         return
     for heading, data in drawn:
+        if not data:
+            continue
         source = base64.b64encode(data).decode()
         yield f'<h2>{heading}</h2><section><img alt="{heading}" src="data:image/png;base64,{source}"></section>'

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sitl.missions.twin import plots
+from sitl.missions.twin import plots, report
 from sitl.missions.twin.agreement import Agreement
 from sitl.missions.twin.streams import COPTER
 
@@ -21,6 +21,7 @@ TIME = np.arange(0.0, 10.0, 0.1)
 def figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures themselves, not their PNG bytes."""
     monkeypatch.setattr(plots, "_png", lambda figure: figure)
+    monkeypatch.setattr(report.base64, "b64encode", lambda figure: b"a picture")
 
 
 def agreement(name: str, logged: Any, flown: Any, time: Any = TIME) -> Agreement:
@@ -76,9 +77,12 @@ def test_quantities_over_time() -> None:
     assert [text.get_text() for text in height.get_legend().get_texts()] == ["logged", "twin", "changed twin"]
 
 
-def test_only_the_quantities_that_are_asked_for_are_drawn() -> None:
-    made = twin(whole=[agreement("height", 1.0, 1.0), agreement("climb", 1.0, 1.0), agreement("roll", 1.0, 1.0)])
-    assert names(plots.flown(made, ("roll", "climb"))) == ["climb rate", "roll"]
+def test_what_has_no_quantity_to_draw_is_left_out_of_the_report() -> None:
+    made = twin(whole=[agreement("position", np.zeros((100, 2)), np.zeros((100, 2))), agreement("consumed", 1.0, 1.0)],
+                segments=[agreement("height", 1.0, 1.0)])  # fmt: skip
+    assert plots.flown(made) == plots.opened(made) == b""
+    drawn = list(report._pictures(made))
+    assert len(drawn) == 1 and "The path, from above" in drawn[0]
 
 
 @pytest.mark.parametrize(("first", "drawn"), [(10.0, 10.0), (350.0, -10.0), (190.0, -170.0), (-30.0, -30.0)])
