@@ -16,6 +16,7 @@ OLDEST, NEXT = (0, 60), (0, 69)
 
 REPLACED = {
     "quick": {
+        "numba.core.codegen:CPUCodeLibrary._optimize_final_module": 1,
         "numba.core.codegen:CPUCodeLibrary._finalize_final_module": 1,
         "numba.core.cpu:CPUContext.get_executable": 4,
     },

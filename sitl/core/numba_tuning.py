@@ -46,8 +46,13 @@ def summary() -> str:
 
 @contextlib.contextmanager
 def quick(entry: str) -> Iterator[None]:
-    """While it lasts, only code of libraries whose name contains ``entry`` becomes machine code."""
-    restore = _skip_inner_machine_code(entry) if fits("quick") else None
+    """While it lasts, only code of libraries whose name contains ``entry`` is optimised as a whole and becomes machine
+    code.
+
+    All that an entry calls is linked into it and optimised there, so that what Numba does for each law beforehand, for
+    the sake of calls from Python, is done twice; of a law that calls others, as many times as there are callers above.
+    """
+    restore = _skip_inner_work(entry) if fits("quick") else None
     try:
         yield
     finally:
@@ -55,16 +60,21 @@ def quick(entry: str) -> Iterator[None]:
             restore()
 
 
-def _skip_inner_machine_code(entry: str) -> Callable[[], None]:
+def _skip_inner_work(entry: str) -> Callable[[], None]:
     from numba.core.codegen import CPUCodeLibrary
     from numba.core.cpu import CPUContext
 
-    finalize, executable = CPUCodeLibrary._finalize_final_module, CPUContext.get_executable
+    optimise, finalize = CPUCodeLibrary._optimize_final_module, CPUCodeLibrary._finalize_final_module
+    executable = CPUContext.get_executable
+
+    def optimise_entry_only(self: Any) -> None:
+        if entry in self.name:
+            optimise(self)
 
     def finalize_entry_only(self: Any) -> None:
         if entry in self.name:
             finalize(self)
-        else:  # optimised IR is all that the caller links
+        else:  # IR is all that the caller links
             self._finalize_dynamic_globals()
             self._finalized = True
 
@@ -73,10 +83,12 @@ def _skip_inner_machine_code(entry: str) -> Callable[[], None]:
             return executable(self, library, fndesc, env)
         return [].append  # Numba keeps laws by their callables: it must be built in, and another one each time
 
+    CPUCodeLibrary._optimize_final_module = optimise_entry_only
     CPUCodeLibrary._finalize_final_module = finalize_entry_only
     CPUContext.get_executable = executable_of_entry_only
 
     def restore() -> None:
+        CPUCodeLibrary._optimize_final_module = optimise
         CPUCodeLibrary._finalize_final_module = finalize
         CPUContext.get_executable = executable
 

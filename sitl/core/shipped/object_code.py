@@ -7,7 +7,6 @@ Numba.
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -19,7 +18,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import config
 from numba.core.ccallback import CFunc
-from numba.core.codegen import CPUCodeLibrary, _parse_refprune_flags
+from numba.core.codegen import _parse_refprune_flags
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.llvm_bindings import create_pass_builder
 from numba.extending import intrinsic
@@ -189,28 +188,12 @@ def _translate(
     space = {"__name__": name, **names}
     exec(compile(source, f"<{name}>", "exec"), space)
     made: Any = CFunc(space[ENTRY], (signature.args, signature.return_type), {}, options)
-    with quick("no library"), _not_optimised(), trust_laws():
+    with quick("no library"), trust_laws():
         result = made._compile_uncached()
         if not result.library._finalized:
             result.library.finalize()
     text = str(result.library._final_module)
     return Translated(name, code, text, result.fndesc.llvm_cfunc_wrapper_name)
-
-
-@contextlib.contextmanager
-def _not_optimised() -> Iterator[None]:
-    """While it lasts, the module of an entry stays as it is; laws are optimised, as ever, before they are linked."""
-    original = CPUCodeLibrary._optimize_final_module
-
-    def optimise(self: Any) -> None:
-        if ENTRY not in self.name:
-            original(self)
-
-    CPUCodeLibrary._optimize_final_module = optimise
-    try:
-        yield
-    finally:
-        CPUCodeLibrary._optimize_final_module = original
 
 
 def switch(unit_symbol: str, integers: int, target: Target) -> bytes:
