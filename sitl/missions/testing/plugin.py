@@ -25,8 +25,9 @@ WRITTEN = "sitl_golden"
 """Name of a report's property: a golden that the test has written."""
 
 
-def pytest_addoption(parser: pytest.Parser) -> None:
+def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:
     """The options, each with its setting in the ini-file."""
+    _import_as_always(pluginmanager)
     group = parser.getgroup("sitl", "vehicles in simulated time (gym-sitl)")
     group.addoption("--sitl-update-golden", action="store_true", help="write golden flights instead of comparing")
     for name, metavar, text in (
@@ -42,6 +43,17 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     ):
         group.addoption(f"--sitl-{name}", metavar=metavar, help=text)
         parser.addini(f"sitl_{name.replace('-', '_')}", text)
+
+
+def _import_as_always(manager: pytest.PytestPluginManager) -> None:
+    """Let the package be imported as it is.
+
+    Of a distribution with a plugin, pytest reads and compiles each module anew when it is imported, to tell more about
+    its assertions: here hundreds of modules without one, which takes longer than to boot a vehicle.
+    """
+    marked = getattr(manager.rewrite_hook, "_must_rewrite", None)
+    if isinstance(marked, set):
+        marked.discard("sitl")
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -74,7 +74,7 @@ def _thin(*lines: Array) -> tuple[Array, ...]:
 
 
 def flown(twin: Twin) -> bytes:
-    """Each quantity that moves over time, logged, of the twin and of the changed twin. PNG bytes; empty: there is none."""
+    """Each quantity that moves over time: logged, of the twin, of the changed twin. PNG bytes; empty: there is none."""
     shown = [one for one in twin.whole if one.quantity.name not in _HIDDEN and not one.quantity.is_asked]
     if not shown:
         return b""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -189,3 +190,26 @@ def test_the_example(project: pytest.Pytester) -> None:
     result = project.run(sys.executable, "-m", "pytest", str(project.path / "regression"))
     result.assert_outcomes(passed=4)
     assert not list((project.path / "regression").rglob("*.tlog"))
+
+
+def test_the_package_is_imported_as_it_is_compiled(project: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where pytest knows it as the distribution of a plugin, as it does when it was installed from a wheel."""
+    about = project.mkdir("installed") / "gym_sitl-0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: gym-sitl\nVersion: 0\n")
+    (about / "RECORD").write_text("sitl/__init__.py,,\nother/__init__.py,,\n")
+    (about / "entry_points.txt").write_text("[pytest11]\nsitl = sitl.missions.testing.plugin\n")
+    monkeypatch.setenv("PYTHONPATH", str(about.parent), prepend=os.pathsep)
+    monkeypatch.delenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD")
+    monkeypatch.delenv("PYTEST_ADDOPTS")
+    project.makepyfile(
+        """
+        def test_how_it_was_imported(copter, pytestconfig):
+            import sitl.simulation
+
+            hook = pytestconfig.pluginmanager.rewrite_hook
+            assert sitl.simulation.__loader__ is not hook
+            assert "other" in hook._must_rewrite, "what this test makes is seen"
+        """
+    )
+    project.runpytest_subprocess().assert_outcomes(passed=1)
