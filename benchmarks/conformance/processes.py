@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -44,11 +45,10 @@ def run(command: Sequence[str], folder: Path, log: Path, timeout_s: float, envir
             if process.poll() is None:
                 process.kill()
                 process.wait()
-            for left in marked(mark):
-                try:
-                    os.kill(left, signal.SIGKILL)
-                except ProcessLookupError:
-                    continue
+            while left := marked(mark):  # one that is killed goes on until it has been given processor time to end
+                for pid in left:
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(pid, signal.SIGKILL)
 
 
 def marked(mark: str) -> list[int]:
