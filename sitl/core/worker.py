@@ -3,7 +3,9 @@
 (started by ``compile_tasks``), for this machine into the cache, or for other machines as object files.
 
 The units' modules and Numba are loaded once; each unit is compiled by a copy of this process, because what is compiled
-in one process is compiled in one way. With ``kernels`` for RECORD, they are kernels on arrays (``array_kernels.py``).
+in one process is compiled in one way. Laws that many units contain are compiled once as well (``shared_laws.py``), when
+the copies for units that inline everything have been made. With ``kernels`` for RECORD, they are kernels on arrays
+(``array_kernels.py``).
 One line on standard output for each step: "begin UNIT", "end UNIT" or "fail UNIT". Where a process cannot be copied,
 each unit has a process of its own.
 """
@@ -19,7 +21,9 @@ import traceback
 import warnings
 from collections.abc import Callable, Sequence
 
+from .kernels import UNITS
 from .order import KERNELS_PATH, Order
+from .shared_laws import ENOUGH, compile_once
 
 FORKS = sys.platform == "linux"
 """Copies of a process that has loaded Numba work there."""
@@ -41,7 +45,6 @@ def compile_one(order: Order, name: str) -> None:
     import llvmlite.binding
 
     from .compile import load_unit, symbol
-    from .kernels import UNITS
 
     for unit in UNITS.values():
         if unit.name != name:  # never called here: any address lets the linker finish
@@ -95,9 +98,14 @@ def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:
         start = lambda task: fork(order, task.partition(":")[2])  # noqa: E731
     else:
         start = lambda task: spawn(order, task)  # noqa: E731
-    waiting, running = list(tasks), dict[int, str]()
+    early = [task for task in tasks if order.path != KERNELS_PATH and UNITS[task.partition(":")[2]].inline]
+    waiting, running = [*early, *(task for task in tasks if task not in early)], dict[int, str]()
+    shares = FORKS and len(tasks) - len(early) >= ENOUGH
     while waiting or running:
         while waiting and len(running) < jobs:
+            if shares and waiting[0] not in early:
+                compile_once()
+                shares = False
             task = waiting.pop(0)
             print("begin", task.partition(":")[2], flush=True)
             running[start(task)] = task.partition(":")[2]
