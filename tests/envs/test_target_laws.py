@@ -28,6 +28,24 @@ def test_sparse_rewards(distance: float, far: float, worth: float) -> None:
     assert out.tolist() == pytest.approx([0.0, worth])
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_each_axis_counts_as_much_as_it_is_given(axis: int) -> None:
+    """One metre along an axis that counts twice is two metres away, whatever is between it and the goal on others."""
+    axes, there = np.zeros(3), np.full((1, 3), 5.0)
+    axes[axis], there[0, axis] = 2.0, 1.0
+    out = np.zeros(1)
+    hold.goal_worths(there, np.zeros((1, 3)), np.zeros((1, 3)), axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    hold.goal_worths(np.zeros((1, 3)), there, np.zeros((1, 3)), axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    hold.goal_worths(np.zeros((1, 3)), np.zeros((1, 3)), there, axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    names = {"scale": 4.0, "half": 0.0, "radius": 9.0, "settle": 0.0, "lost": 8.0, "lost_reward": 0.0, "seconds": 0.1}
+    noted = moving.Noted(np.zeros((1, 2)), np.zeros(1))
+    moving.judge_follow(moving.Following(**names), there, np.zeros((1, 3)), axes, rows(1.0), noted, outcome())
+    assert noted.errors[0] == pytest.approx(2.0)
+
+
 @pytest.mark.parametrize("width", [1, 2, 4, 8])
 def test_the_mean_square_of_an_action(width: int) -> None:
     table = np.vstack([np.full(width, 9.0), np.arange(1.0, width + 1.0)])
