@@ -241,3 +241,32 @@ def test_what_was_started_for_a_link_that_cannot_be_opened_is_closed(monkeypatch
     with pytest.raises(LinkLostError, match="refused"):
         Foreign("host", "plant", "tcp:1", None, StepTelemetry(8), 5.0)  # type: ignore[arg-type]
     assert closed == ["host"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "program", "params", "repeats"),
+    [
+        (foreign.ARDUPILOT, "arducopter", {}, True),
+        (foreign.ARDUPILOT, "arducopter", {foreign.ardupilot.LOG: 1.0}, False),
+        (foreign.ARDUPILOT, None, {}, False),  # nobody knows how it was started
+        (foreign.PX4, "px4", {}, False),
+    ],
+)
+def test_a_flight_repeats_of_an_ardupilot_that_was_started_here_without_a_log(
+    monkeypatch: pytest.MonkeyPatch, kind: Any, program: Any, params: Any, repeats: bool
+) -> None:
+    process = SimpleNamespace(pid=12)
+    host = SimpleNamespace(address=("127.0.0.1", 9002), close=lambda: None)
+    for name in ("JsonHost", "HilHost"):
+        monkeypatch.setattr(foreign, name, lambda plant, address: host)
+    monkeypatch.setattr(foreign, "free_tcp_run", lambda count: 5760)
+    monkeypatch.setattr(foreign.ardupilot, "start", lambda *given, **more: process)
+    monkeypatch.setattr(foreign.px4, "start", lambda *given, **more: process)
+    monkeypatch.setattr(foreign.px4, "free_instance", lambda: 0)
+    monkeypatch.setattr(foreign.px4, "unknown_names", lambda process, params: [])
+    monkeypatch.setattr(foreign, "Foreign", lambda *given: SimpleNamespace(repeats=False, given=given))
+    choice: Any = SimpleNamespace(kind=kind, program=program, connection="tcp:127.0.0.1:5760", name="it",
+                                  for_autopilot=lambda given: given)  # fmt: skip
+    plant: Any = SimpleNamespace(close=lambda: None, home=None, vehicle=SimpleNamespace(airframe=None))
+    made: Any = foreign.launch(choice, plant, params, StepTelemetry(8), 5.0)
+    assert made.repeats is repeats and made.given[3] is (None if program is None else process)
