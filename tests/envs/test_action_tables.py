@@ -76,6 +76,40 @@ def test_a_copter_among_solids_is_slower_and_turns() -> None:
     assert {*COPTER_MOVES_AMONG} - {*COPTER_MOVES} == {"turn left", "turn right"}
 
 
+OWN_BOXES = [name for name in PRESETS if isinstance(PRESETS[name]().get("action"), Normalised)]
+
+
+@pytest.mark.parametrize("preset", OWN_BOXES)
+def test_speeds_of_an_ids_own_box_are_alike_both_ways(preset: str) -> None:
+    """None is faster than what is usual; among solids, where it has to stop within what it sees, it is slower."""
+    box: Any = options_of(preset, {})["action"]
+    usual, among = COPTER.agile["velocity"][1], "forest" in preset or "rooms" in preset
+    assert box.setpoint.name == "velocity"
+    for column, (low, high) in zip(box.columns, box.limits, strict=True):
+        assert low == -high and 0.0 < high <= usual[column] and (high < usual[column] or not among or column == TURN)
+    assert box.limits[FORWARD] == box.limits[LEFT]
+    assert not among or box.limits[FORWARD][1] >= COPTER_MOVES_AMONG["forward"][FORWARD]
+
+
+def test_copters_that_stop_among_solids_have_boxes_of_their_own() -> None:
+    among = {f"copter-{world}{version}" for world in ("forest", "rooms") for version in ("", "-v1")}
+    assert among <= set(OWN_BOXES)
+
+
+@pytest.mark.parametrize("who", KINDS)
+def test_set_points_are_alike_that_one_mode_and_one_parameter_take(who: str) -> None:
+    kind: Any = KINDS[who]
+    if kind is None:
+        return
+    for one in kind.modes:
+        for other in kind.modes:
+            same_mode = kind.modes[one] == kind.modes[other]
+            same_parameter = kind.parameters.get(one) == kind.parameters.get(other)
+            found = kind.are_alike(one, other)
+            assert found is (same_mode and same_parameter) is kind.are_alike(other, one), (one, other)
+        assert kind.are_alike(one, one) is True and kind.are_alike("", one) is False, "before the first, none"
+
+
 def test_a_rover_drives_back_as_fast_and_steers_the_same_wheels() -> None:
     """Backwards with the wheels to the left it turns clockwise."""
     assert ROVER_MOVES["back"] == tuple(-x for x in ROVER_MOVES["forward"])

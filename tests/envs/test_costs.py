@@ -69,6 +69,17 @@ def test_a_fence_is_a_box_and_what_does_not_fly_is_judged_in_x_and_y():
     assert costs_of(robot, "fence", task=task)["cost_fence"].tolist() == [0.0, 1.0, 1.0]
 
 
+@pytest.mark.parametrize("flies", [True, False])
+def test_below_the_arena_of_a_task_nobody_is_outside_but_below_a_box_that_was_given(flies):
+    """An arena begins where positions are drawn; a robot that lands is below. What does not fly has no heights."""
+    robot, box = Told(), Arena((-5.0, -5.0, 1.0), (5.0, 5.0, 2.0))
+    robot.kind = type("Kind", (), {"takes_off": flies})
+    robot.truth[:, :3] = (0.0, 0.0, -3.0), (0.0, 0.0, 1.5), (0.0, 0.0, 2.5)
+    task = type("Task", (), {"arena_at": lambda self, index: box})()
+    assert costs_of(robot, "fence", task=task)["cost_fence"].tolist() == [0.0, 0.0, float(flies)]
+    assert costs_of(robot, Fence(box))["cost_fence"].tolist() == [float(flies), 0.0, float(flies)]
+
+
 def test_proximity_is_the_distance_of_the_volume_to_the_nearest_solid():
     robot = Told([Box((10.0, 0.0, 1.0), (2.0, 20.0, 2.0), 0.0), Box((0.0, 8.0, 1.0), (2.0, 2.0, 2.0), 0.0)])
     robot.truth[:, :3] = (8.0, 0.0, 0.5), (0.0, 6.0, 0.5), (8.9, 0.0, 5.0)

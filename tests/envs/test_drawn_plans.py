@@ -183,3 +183,22 @@ def test_without_a_screen_a_window_is_refused(monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(DependencyNotInstalled, match='render_mode "window" finds no screen'):
         drawn.show()
     drawn.close()
+
+
+def test_a_window_shows_the_picture_until_it_is_closed_and_opens_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    import pygame
+
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    drawn = Renderer(robot(2.0, 2.0), EMPTY)
+    drawn.start()
+    drawn.close()
+    assert not pygame.display.get_init(), "nothing was open"
+    for _ in range(2):
+        drawn.show()
+        surface = pygame.display.get_surface()
+        assert pygame.display.get_caption()[0] == "toy in plain" and surface.get_size() == (640, 350)
+        shown = np.frombuffer(pygame.image.tobytes(surface, "RGB"), np.uint8).reshape(350, 640, 3)
+        assert np.array_equal(shown, drawn.picture())
+        drawn.close()
+        assert not pygame.display.get_init()
+    drawn.close()

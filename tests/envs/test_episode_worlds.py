@@ -4,6 +4,7 @@
 import pickle
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
@@ -16,7 +17,9 @@ from sitl.envs.ids import camel_case
 from sitl.envs.navigate import Navigate
 from sitl.envs.options import EnvOptionError
 from sitl.envs.page.source import EnvSource
+from sitl.envs.parts import Height
 from sitl.envs.presets import PRESETS, options_of
+from sitl.envs.robots.robot import floors_of, world_of
 from sitl.envs.robots.turtlebot import Turtlebot
 from sitl.envs.starts import ReachableCells
 from sitl.envs.targets.among import Among
@@ -192,6 +195,21 @@ def test_floors_starts_and_truth_follow():
         assert true[:3] == pytest.approx(worlds.load(world).start().position + np.array([0.0, 0.0, 1.5]), abs=0.5)
         assert true[2] - floor == pytest.approx(seen[1], abs=1e-5) == pytest.approx(1.5, abs=0.3)
         assert seen[0] == pytest.approx(1.5, abs=0.4)
+
+
+def test_each_robot_is_in_its_own_world_above_its_own_floor():
+    """A robot that stays where it was made has one world and one floor."""
+    travelling = SimpleNamespace(worlds=[HIGH, BLOCKED], world=HIGH, floors=np.array([2.0, 0.0]))
+    assert floors_of(travelling).tolist() == [2.0, 0.0]
+    assert [world_of(travelling, k) for k in range(2)] == [HIGH, BLOCKED]
+    staying = SimpleNamespace(world=HIGH)
+    assert floors_of(staying) == 2.0 and world_of(staying, 1) is HIGH
+    for robot, heights in ((travelling, [1.0, 4.5]), (staying, [1.0, 2.5])):
+        robot.pose = np.array([(0.0, 0.0, 3.0, 0.0), (0.0, 0.0, 4.5, 0.0)])
+        height, out = Height(), np.zeros((2, 1), np.float32)
+        height.prepare(SimpleNamespace(robot=robot))
+        height.write(out)
+        assert out[:, 0].tolist() == heights
 
 
 def test_contacts_are_with_the_solids_of_the_episodes_world():

@@ -206,3 +206,67 @@ def test_everything_is_closed_at_the_end() -> None:
     closed.clear()
     link(**{**parts, "stream": None}).close()
     assert closed == ["host", "plant"]
+
+
+# ---------------------------------------------------------------- what it is made of
+
+
+@pytest.mark.parametrize("process", [None, SimpleNamespace(pid=12, stop=lambda: None)])
+@pytest.mark.parametrize("steps", [True, False])
+def test_a_link_keeps_what_it_was_given_and_its_scans_come_from_the_physics(
+    monkeypatch: pytest.MonkeyPatch, process: Any, steps: bool
+) -> None:
+    done: list[str] = []
+    monkeypatch.setattr(Foreign, "_use", lambda self, plant: done.append(plant))
+    monkeypatch.setattr(Foreign, "_connect", lambda self: done.append("connected"))
+    monkeypatch.setattr(Foreign, "find", lambda self: done.append("found"))
+    monkeypatch.setattr(foreign, "OneCore", lambda pid: ("one core", pid))
+    inbox: Any = StepTelemetry(8) if steps else SimpleNamespace()
+    host: Any = SimpleNamespace(boots=3, before_boot_us=1_000_000, time_us=250_000)
+    made = Foreign(host, "plant", "tcp:1", process, inbox, 5.0)  # type: ignore[arg-type]
+    assert done == ["plant", "connected", "found"] and (made.host, made.process) == (host, process)
+    assert (made.name, made.boots, made.time_us, made.patience) == ("tcp:1", 3, 1_250_000, 5.0)
+    assert made._one_core == ("one core", None if process is None else 12) and not made.repeats and not made.is_exact
+    assert not steps or (inbox.scans_by_mavlink, inbox.longest_interval_us) == (False, foreign._TELEMETRY_US)
+
+
+def test_what_was_started_for_a_link_that_cannot_be_opened_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def connect(self: Any) -> None:
+        raise LinkLostError("refused")
+
+    closed: list[Any] = []
+    monkeypatch.setattr(Foreign, "_use", lambda self, plant: None)
+    monkeypatch.setattr(Foreign, "_connect", connect)
+    monkeypatch.setattr(Foreign, "close", lambda self: closed.append(self.host))
+    with pytest.raises(LinkLostError, match="refused"):
+        Foreign("host", "plant", "tcp:1", None, StepTelemetry(8), 5.0)  # type: ignore[arg-type]
+    assert closed == ["host"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "program", "params", "repeats"),
+    [
+        (foreign.ARDUPILOT, "arducopter", {}, True),
+        (foreign.ARDUPILOT, "arducopter", {foreign.ardupilot.LOG: 1.0}, False),
+        (foreign.ARDUPILOT, None, {}, False),  # nobody knows how it was started
+        (foreign.PX4, "px4", {}, False),
+    ],
+)
+def test_a_flight_repeats_of_an_ardupilot_that_was_started_here_without_a_log(
+    monkeypatch: pytest.MonkeyPatch, kind: Any, program: Any, params: Any, repeats: bool
+) -> None:
+    process = SimpleNamespace(pid=12)
+    host = SimpleNamespace(address=("127.0.0.1", 9002), close=lambda: None)
+    for name in ("JsonHost", "HilHost"):
+        monkeypatch.setattr(foreign, name, lambda plant, address: host)
+    monkeypatch.setattr(foreign, "free_tcp_run", lambda count: 5760)
+    monkeypatch.setattr(foreign.ardupilot, "start", lambda *given, **more: process)
+    monkeypatch.setattr(foreign.px4, "start", lambda *given, **more: process)
+    monkeypatch.setattr(foreign.px4, "free_instance", lambda: 0)
+    monkeypatch.setattr(foreign.px4, "unknown_names", lambda process, params: [])
+    monkeypatch.setattr(foreign, "Foreign", lambda *given: SimpleNamespace(repeats=False, given=given))
+    choice: Any = SimpleNamespace(kind=kind, program=program, connection="tcp:127.0.0.1:5760", name="it",
+                                  for_autopilot=lambda given: given)  # fmt: skip
+    plant: Any = SimpleNamespace(close=lambda: None, home=None, vehicle=SimpleNamespace(airframe=None))
+    made: Any = foreign.launch(choice, plant, params, StepTelemetry(8), 5.0)
+    assert made.repeats is repeats and made.given[3] is (None if program is None else process)

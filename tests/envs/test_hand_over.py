@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import sys
 import threading
@@ -15,7 +16,7 @@ import pytest
 
 from sitl.autopilot.copter.modes.guided import GUIDED
 from sitl.bridge.dialect import message
-from sitl.bridge.frame import encode_v2
+from sitl.bridge.frame import Splitter, encode_v2
 from sitl.client.connection import RealTime
 from sitl.envs import EnvOptionError
 from sitl.envs.mavlink import hand_over
@@ -370,6 +371,26 @@ class BrokenStream:
         return said
 
 
+class TimedStream(BrokenStream):
+    """A link on which time goes by while somebody listens, and which notes when each command was sent."""
+
+    def __init__(self, clock, answer):
+        super().__init__(0, b"")
+        self._clock, self._reply, self.commands = clock, answer, []
+
+    def write(self, data):
+        ((kind, payload, *_),) = Splitter().cut(data)
+        fields = kind.decode(payload)
+        self.commands.append((self._clock.now, fields))
+        if fields.command == MODE:
+            self._said += self._reply
+
+    def wait(self, seconds):
+        if not self._said:
+            self._clock.now += min(seconds, 0.02)
+        return bool(self._said)
+
+
 def heard(name, system=1, **fields):
     kind = message(name)
     return encode_v2(kind, kind.payload(**fields), 0, system, 1)
@@ -413,6 +434,46 @@ def test_what_ends_it(monkeypatch, answer, done):
     deed.run()
     says = "it accepts mode 17, but no HEARTBEAT says" if deed.result == 0 else "does not answer"
     assert deed.is_done == done and len(stream.sent) >= 1 and (done or says in deed.failure)
+
+
+REFUSED = heard("COMMAND_ACK", command=MODE, result=4)
+
+
+@pytest.mark.parametrize(
+    ("answer", "done", "seconds", "modes", "says"),
+    [
+        (b"", False, 10.0, 40, r"it does not answer DO_SET_MODE to mode 17, sent 4\d times in 10 s"),
+        (REFUSED, False, 2.0, 8, r"it refuses mode 17 \(MAV_RESULT 4\)"),
+        (UNTOLD, False, 10.0, 40, "it accepts mode 17, but no HEARTBEAT says in 10 s that it is in it"),
+        (OWN, True, 2.0, 5, None),  # at once, and from 1.2 s on again
+    ],
+)
+def test_how_long_and_how_often_a_vehicle_is_asked(monkeypatch, answer, done, seconds, modes, says):
+    """Every quarter of a second; for ten seconds where it does not answer, for two where it refuses. One that accepts
+    is asked for a HEARTBEAT; it is believed when none comes within two seconds."""
+    clock = Clock()
+    monkeypatch.setattr(hand_over, "time", clock)
+    stream, inbox = TimedStream(clock, answer), StepTelemetry(8)
+    inbox.system, inbox.mode, inbox.armed = 1, GUIDED, True
+    deed = hand_over.HandOver(RealTime(stream, inbox, 1.0), BRAKE, GUIDED)
+    deed.run()
+    assert deed.is_done == done and clock.now == pytest.approx(seconds, abs=0.4)
+    asked = [(at, fields) for at, fields in stream.commands if fields.command == MODE]
+    assert deed.sent == len(asked) == pytest.approx(modes, abs=1)
+    assert [fields.confirmation for _, fields in asked] == list(range(len(asked)))
+    assert {(f.param1, f.param2, f.param3, f.target_system, f.target_component) for _, f in asked} == {(1, 17, 0, 1, 1)}
+    gaps = np.diff([at for at, _ in asked]).tolist()
+    assert gaps == pytest.approx([1.25 if done else 0.25] + [0.25] * (len(gaps) - 1), abs=0.04)
+    others = [fields for _, fields in stream.commands if fields.command != MODE]
+    assert all((fields.command, fields.param1) == (512, 0) for fields in others), "REQUEST_MESSAGE of HEARTBEAT"
+    assert len(others) == pytest.approx(9 if done else 0, abs=1)
+    assert says is None or re.fullmatch(says, deed.failure)
+
+
+def test_a_vehicle_that_could_not_be_asked_is_reported_with_the_reason():
+    deed = hand_over.HandOver(RealTime(BrokenStream(0, b""), StepTelemetry(8), 1.0), BRAKE, GUIDED)
+    deed.sent, deed.error = 3, OSError("cable")
+    assert deed.failure == "it does not answer DO_SET_MODE to mode 17, sent 3 times in 10 s (cable)"
 
 
 def test_a_vehicle_that_is_not_ours_is_not_asked():

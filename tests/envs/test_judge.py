@@ -13,6 +13,7 @@ import pytest
 import sitl.envs  # noqa: F401
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.judge import ESTIMATE, TRUTH, Judge
+from sitl.envs.senses import arrays_stay, reads_scan
 from sitl.envs.targets.target_task import nearness
 from sitl.envs.tasks_v1 import GOAL, HOVER_HALF, worst_of
 
@@ -55,6 +56,40 @@ def test_who_does_not_know_the_truth_is_judged_by_the_estimate():
     judge = Judge(robot, TRUTH)
     assert (judge.by, judge.knows_truth) == (ESTIMATE, False)
     assert judge.pose is robot.pose and judge.velocity is robot.velocity
+
+
+class Moving:
+    """A robot of a plugin, which says nothing about its arrays and makes new ones each time it is asked."""
+
+    name, count = "moving", 1
+
+    def __init__(self):
+        self.moves = 0.0
+
+    @property
+    def state(self):
+        return np.full((1, 12), 99.0)
+
+    @property
+    def pose(self):
+        return np.full((1, 4), self.moves)
+
+    @property
+    def velocity(self):
+        return np.full((1, 4), 10.0 + self.moves)
+
+
+def test_what_a_robot_does_not_say_of_its_arrays_is_not_relied_on():
+    robot = Moving()
+    assert arrays_stay(robot) is False and reads_scan(robot) is True, "nothing is known, so it may"
+    robot.arrays_stay, robot.reads_scan = True, False
+    assert arrays_stay(robot) is True and reads_scan(robot) is False
+    robot = Moving()
+    judge = Judge(robot, ESTIMATE)
+    for moves in (1.0, 2.0):
+        robot.moves = moves
+        judge.moved()
+        assert judge.table().tolist() == [[moves] * 4 + [10.0 + moves] * 4]
 
 
 def test_another_judge_is_refused():

@@ -28,6 +28,24 @@ def test_sparse_rewards(distance: float, far: float, worth: float) -> None:
     assert out.tolist() == pytest.approx([0.0, worth])
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_each_axis_counts_as_much_as_it_is_given(axis: int) -> None:
+    """One metre along an axis that counts twice is two metres away, whatever is between it and the goal on others."""
+    axes, there = np.zeros(3), np.full((1, 3), 5.0)
+    axes[axis], there[0, axis] = 2.0, 1.0
+    out = np.zeros(1)
+    hold.goal_worths(there, np.zeros((1, 3)), np.zeros((1, 3)), axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    hold.goal_worths(np.zeros((1, 3)), there, np.zeros((1, 3)), axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    hold.goal_worths(np.zeros((1, 3)), np.zeros((1, 3)), there, axes, 1.0, 10.0, out)
+    assert out[0] == pytest.approx(-(0.5 + 0.5 * 0.2))
+    names = {"scale": 4.0, "half": 0.0, "radius": 9.0, "settle": 0.0, "lost": 8.0, "lost_reward": 0.0, "seconds": 0.1}
+    noted = moving.Noted(np.zeros((1, 2)), np.zeros(1))
+    moving.judge_follow(moving.Following(**names), there, np.zeros((1, 3)), axes, rows(1.0), noted, outcome())
+    assert noted.errors[0] == pytest.approx(2.0)
+
+
 @pytest.mark.parametrize("width", [1, 2, 4, 8])
 def test_the_mean_square_of_an_action(width: int) -> None:
     table = np.vstack([np.full(width, 9.0), np.arange(1.0, width + 1.0)])
@@ -146,7 +164,7 @@ def test_pads_go_there_for_ten_seconds_and_back(time: float, there: float) -> No
 
 def land(height: float = 0.0, away: float = 0.0, speed: float = 0.0, sinking: float = 0.2, landed: int = 0,
          climb: float = 0.0, lets_down: bool = False, pad: float = 0.0, time: float = 5.0, yaw: float = 0.0,
-         **more: Any) -> tuple[Any, Any]:  # fmt: skip
+         crashed: int = 0, **more: Any) -> tuple[Any, Any]:  # fmt: skip
     """One robot so high above its floor at 1 m, so far north of its pad of half a metre, which goes ahead."""
     names = {"pad": 0.5, "progress": 2.0, "far": 20.0, "time": -0.1, "success_reward": 50.0, "crash_reward": -20.0,
              "lost": 30.0, "lost_reward": -5.0, "settle": 1.0, "lets_down": lets_down, **more}  # fmt: skip
@@ -154,7 +172,7 @@ def land(height: float = 0.0, away: float = 0.0, speed: float = 0.0, sinking: fl
     state = rows((away, 0, 1.0 + height, yaw, speed, 0, climb, 0))
     grounds = landing.Grounds(rows(1.0), rows((0, 0, 1.0)), flags(landed))
     so_far = landing.SoFar(rows((pad, 0, 0)), rows(3.0), rows(sinking), rows((9, 9, 9)), np.zeros((1, 2)), rows(0.0))
-    found = outcome()
+    found = outcome(1, flags(crashed))
     landing.judge_land(rule, state, grounds, rows(time), so_far, found)
     return found, so_far
 
@@ -209,6 +227,11 @@ def test_a_pad_that_is_lost_ends_the_episode() -> None:
     assert found.terminated[0] and found.paid[3, 0] == -5.0 and found.paid[0, 0] == pytest.approx(2.0 * (3.0 - 20.0))
     assert not land(height=5.0, away=29.0)[0].terminated[0]
     assert so_far.errors[0] == pytest.approx(math.hypot(30.1, 5.0)) and land(time=0.9)[1].sums[0, 1] == 0.0
+
+
+def test_of_a_crash_no_term_of_a_landing_is_told() -> None:
+    assert land(crashed=1, lost_reward=-5.0)[0].paid[:4, 0].tolist() == [0.0, 0.0, 0.0, 0.0]
+    assert land(height=5.0, away=30.1, crashed=1)[0].paid[:4, 0].tolist() == [0.0, 0.0, 0.0, 0.0]
 
 
 # ---------------------------------------------------------------- parking

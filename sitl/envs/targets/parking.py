@@ -122,8 +122,9 @@ class Park(TargetTask):
     ) -> None:
         super().__init__(**others)
         self._bays = np.zeros((0, 3)) if bays is None else np.array(bays, np.float64)
-        if bays is not None and not (self._bays.ndim == 2 and self._bays.shape[1] == 3 and len(self._bays)):
-            raise EnvOptionError(f"Park(bays={bays!r}); it must be (x, y, yaw) [m, rad], one at least")
+        is_table = self._bays.ndim == 2 and self._bays.shape[1] == 3 and np.isfinite(self._bays).all()
+        if bays is not None and not (is_table and len(self._bays)):
+            raise EnvOptionError(f"Park(bays={bays!r}); it must be (x, y, yaw) [m, rad], one at least, finite numbers")
         for name, value in {"radius": radius, "angle": angle, "speed": speed}.items():
             if not value > 0.0:
                 raise EnvOptionError(f"Park({name}={value}); it must be above 0")

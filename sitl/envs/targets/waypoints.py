@@ -144,8 +144,8 @@ class Waypoints(TargetTask):
     ) -> None:
         super().__init__(**others)
         self._fixed = None if places is None else np.array(places, np.float64)
-        if self._fixed is not None and (self._fixed.ndim != 2 or self._fixed.shape[1] != 3 or not len(self._fixed)):
-            raise EnvOptionError(f"Waypoints(places={places!r}); it must be one (x, y, z) [m] at least")
+        if self._fixed is not None and not _are_places(self._fixed):
+            raise EnvOptionError(f"Waypoints(places={places!r}); it must be one (x, y, z) [m] at least, finite numbers")
         self._count = count if self._fixed is None else len(self._fixed)
         if not 1 <= self._count <= 1000:
             raise EnvOptionError(f"Waypoints(count={count}); it must be 1 .. 1000")
@@ -224,3 +224,8 @@ class Waypoints(TargetTask):
         """See ``Task``."""
         super().recall(index, memory)
         self._distance[index] = memory[3]
+
+
+def _are_places(rows: Floats) -> bool:
+    """Whether it is one row at least of x, y, z."""
+    return bool(rows.ndim == 2 and rows.shape[1] == 3 and len(rows) and np.isfinite(rows).all())
