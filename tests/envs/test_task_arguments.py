@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sitl.envs.options import EnvOptionError
@@ -64,13 +65,23 @@ def test_numbers_of_targets_have_both_limits(task: Any, name: str, most: int) ->
             task(**given, **{name: refused})
 
 
-@pytest.mark.parametrize("speed", [(1.0, 1.0), (0.1, 3.0), 2])
-def test_a_trajectorys_speed_is_one_or_a_range(speed: Any) -> None:
-    low, high = Trajectory(speed=speed).speed
-    assert (low, high) == (speed if isinstance(speed, tuple) else (speed, speed))
+@pytest.mark.parametrize(
+    ("speed", "drawn"),
+    [((1.0, 1.0), (1.0, 1.0)), ([0.25, 3.0], (0.25, 3.0)), (2, (2.0, 2.0)), (np.float32(0.5), (0.5, 0.5)),
+     (np.int64(3), (3.0, 3.0)), (np.array([1.0, 2.0]), (1.0, 2.0))],
+)  # fmt: skip
+def test_a_trajectorys_speed_is_one_or_a_range(speed: Any, drawn: tuple[float, float]) -> None:
+    assert Trajectory(speed=speed).speed == drawn
 
 
-@pytest.mark.parametrize("speed", [(0.0, 1.0), (2.0, 1.0), (-1.0, 1.0)])
+@pytest.mark.parametrize("offset", [(1.0,), (1.0, 2.0, 3.0), 2.0, (math.nan, 1.0), (1.0, math.inf), (-1.0, 1.0)])
+def test_an_offset_is_two_distances(offset: Any) -> None:
+    Hold(offset=(0.0, 1.5))
+    with pytest.raises(EnvOptionError, match=r"Hold\(offset=.*it must be two numbers, 0 m or more"):
+        Hold(offset=offset)
+
+
+@pytest.mark.parametrize("speed", [(0.0, 1.0), (2.0, 1.0), (-1.0, 1.0), (1.0, 2.0, 3.0), (), (1.0, math.inf)])
 def test_a_range_of_speeds_begins_above_zero_and_does_not_fall(speed: Any) -> None:
     with pytest.raises(EnvOptionError, match="they must be above 0"):
         Trajectory(speed=speed)

@@ -167,6 +167,8 @@ class Hold(TargetTask):
         }.items():
             if not value > 0.0:
                 raise EnvOptionError(f"Hold({name}={value}); it must be above 0")
+        if np.shape(offset) != (2,) or not (np.isfinite(offset).all() and min(offset) >= 0.0):
+            raise EnvOptionError(f"Hold(offset={offset!r}); it must be two numbers, 0 m or more: (aside, up)")
         self.offset, self.radius, self.hold, self.scale, self.effort = offset, radius, hold, scale, effort
         self.is_sparse, self.half, self.far = is_sparse, half, far
         if not far >= 0.0:

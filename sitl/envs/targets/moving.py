@@ -324,10 +324,12 @@ class Trajectory(MovingTask):
         super().__init__(**others)
         if curve not in CURVES:
             raise unknown("Trajectory: curve", curve, CURVES)
-        low, high = (speed, speed) if isinstance(speed, int | float) else speed
-        if not (size > 0.0 and 0.0 < low <= high):
-            raise EnvOptionError(f"Trajectory(size={size}, speed={speed!r}); they must be above 0")
-        self.curve, self.size, self.speed = curve, size, (float(low), float(high))
+        drawn = np.ravel(np.asarray(speed, np.float64))
+        if not (size > 0.0 and len(drawn) in (1, 2) and 0.0 < drawn[0] <= drawn[-1] < math.inf):
+            raise EnvOptionError(
+                f"Trajectory(size={size}, speed={speed!r}); they must be above 0, the speed a number or (low, high)"
+            )
+        self.curve, self.size, self.speed = curve, size, (float(drawn[0]), float(drawn[-1]))
 
     def prepare(self, robot: Robot) -> None:
         """See ``Task``."""
