@@ -18,6 +18,7 @@ CONFIGURE, CONTROL, DISTANCE = MavCmd.DO_DIGICAM_CONFIGURE, MavCmd.DO_DIGICAM_CO
 START, STOP = MavCmd.IMAGE_START_CAPTURE, MavCmd.IMAGE_STOP_CAPTURE
 REQUEST, SET_INTERVAL, FEEDBACK = 512, 511, 180
 SHOT = (0.0, 0.0, 0.0, 0.0, 1.0)
+TICK = 0.0025
 
 
 def bench(kind: float = 1.0, **params: float) -> Bench:
@@ -221,3 +222,46 @@ def test_messages_take_pictures_too() -> None:
     b.ask(mavlink.MAVLink_digicam_configure_message(1, 1, 1, 2, 3, 4, 5, 6, 7, 0, 0))
     assert b.telemetry("CAMERA_FEEDBACK")[0].img_idx == 1
     assert component.receive("COMMAND_LONG") == []
+
+
+@pytest.mark.parametrize("seconds", [0.01, 0.0175, 0.1, 0.5])
+def test_the_output_goes_back_when_its_time_is_over(seconds: float) -> None:
+    b = bench(CAM1_DURATION=seconds, CAM1_SERVO_ON=1700.0, CAM1_SERVO_OFF=1200.0)
+    b.run(0.1)
+    pulses(b)
+    assert b.command(CONTROL, *SHOT) == ACCEPTED
+    b.run(seconds - TICK)
+    assert pulses(b) == [1700]
+    b.run(TICK)
+    assert pulses(b)[-1:] == [1200]
+
+
+def test_a_picture_may_be_taken_when_the_shortest_time_is_over() -> None:
+    b = bench(CAM1_INTRVAL_MIN=2.0)
+    b.run(0.1)
+    assert b.command(START, 0, 0, 0) == ACCEPTED
+    b.run(2.0)
+    assert b.command(START, 0, 0, 0) == ACCEPTED
+    b.run(2.0 - TICK)
+    assert b.command(START, 0, 0, 0) == FAILED
+
+
+@pytest.mark.parametrize("metres, taken", [(1.9375, 0), (2.0, 1), (2.0625, 1)])
+@pytest.mark.parametrize("way", [(1.0, 0.0), (0.0, -1.0)])
+def test_a_picture_is_due_at_its_distance(metres: float, taken: int, way: tuple[float, float]) -> None:
+    b = bench(CAM1_TRIGG_DIST=2.0)
+    b.run(0.1)
+    b.vehicle.v.autopilot.estimate.pos = Vec3(metres * way[0], metres * way[1], -50.0)
+    assert len(pictures(b, 0.1)) == taken
+
+
+def test_the_most_and_the_longest_that_can_be_asked_for() -> None:
+    b = bench()
+    for asked, params in (
+        (ACCEPTED, (0, 1e6, 32767)),
+        (DENIED, (0, 1e6 + 1.0, 32767)),
+        (DENIED, (0, 1e6, 32768)),
+        (DENIED, (0, 1.0, -1)),
+        (ACCEPTED, (1, 0, 2)),
+    ):
+        assert b.command(START, *params) == asked, params

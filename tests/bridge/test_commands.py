@@ -317,3 +317,22 @@ def test_manual_control_steers_with_y_and_drives_with_z(rover_bench: Bench) -> N
     for z, pulse in ((1000, high), (-1000, low), (500, low + (high - low) * 3 // 4)):
         rover_bench.ask(mavlink.MAVLink_manual_control_message(1, 0, 32767, z, 0, 0))
         assert list(rc.override[:4]) == [int(p.RC1_MIN), 0, pulse, 0]
+
+
+@pytest.mark.parametrize(("least", "most"), [(1000.0, 2000.0), (1100.0, 1900.0), (0.0, 2000.0), (1.0, 1001.0)])
+def test_throttles_of_a_motor_test_are_parts_of_the_motors_range(bench: Bench, least: float, most: float) -> None:
+    bench.vehicle.parameters.update({"MOT_PWM_MIN": least, "MOT_PWM_MAX": most})
+    half = 0.5 * (least + most)
+    asked = ((0, 50.0, 0.5), (0, 0.0, 0.0), (0, 100.0, 1.0), (1, half, 0.5), (1, least, 0.0), (1, most, 1.0))
+    for kind, given, _ in asked:
+        assert bench.command(209, 3, kind, given, 2.0) == ACCEPTED
+    told = [call for call in bench.autopilot.calls if call[0] == "test_motor"]
+    assert told == [("test_motor", 3, True, throttle, 2.0) for *_, throttle in asked]
+
+
+@pytest.mark.parametrize(("least", "most"), [(0.0, 0.0), (1500.0, 1500.0), (2000.0, 1000.0)])
+def test_a_range_of_no_pulses_has_no_throttle(bench: Bench, least: float, most: float) -> None:
+    bench.vehicle.parameters.update({"MOT_PWM_MIN": least, "MOT_PWM_MAX": most})
+    for kind in (0, 1):
+        assert bench.command(209, 1, kind, 10.0, 2.0) == ACCEPTED
+    assert {call[3] for call in bench.autopilot.calls if call[0] == "test_motor"} == {-1.0}

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -40,6 +41,23 @@ def item_float(seq: int, i: MissionItem, current: int = 0) -> Any:
 
 def count(n: int, kind: int = 0) -> Any:
     return mavlink.MAVLink_mission_count_message(1, 1, n, kind)
+
+
+OF_A_LIST: dict[str, Callable[[int], Any]] = {
+    "count": lambda kind: count(2, kind),
+    "no item": lambda kind: count(0, kind),
+    "partial list": lambda kind: mavlink.MAVLink_mission_write_partial_list_message(1, 1, 1, 2, kind),
+    "item": lambda kind: item_int(0, SQUARE[0], kind=kind),
+    "item of a target": lambda kind: item_int(0, SQUARE[0], 2, kind),
+    "item in degrees": lambda kind: mavlink.MAVLink_mission_item_message(
+        1, 1, 0, 3, 16, 0, 1, 0, 0, 0, 0, -35.0, 149.0, 10.0, kind
+    ),
+    "request of the list": lambda kind: mavlink.MAVLink_mission_request_list_message(1, 1, kind),
+    "request of an item": lambda kind: mavlink.MAVLink_mission_request_int_message(1, 1, 0, kind),
+    "request of an item in degrees": lambda kind: mavlink.MAVLink_mission_request_message(1, 1, 0, kind),
+    "clear": lambda kind: mavlink.MAVLink_mission_clear_all_message(1, 1, kind),
+}
+"""What a client can send of the list of a MAV_MISSION_TYPE."""
 
 
 def upload(bench: Bench, client: Client, items: list[MissionItem], pack: Any = item_int) -> int:
@@ -400,3 +418,14 @@ def test_home_of_an_empty_mission(bench: Bench) -> None:
     assert item.x == pytest.approx(-35.363262) and item.y == pytest.approx(149.165237)
     (ack,) = bench.ask(mavlink.MAVLink_mission_request_message(1, 1, 1))
     assert ack.type == INVALID_SEQUENCE
+
+
+@pytest.mark.parametrize("kind", [3, 254])
+@pytest.mark.parametrize("name", sorted(OF_A_LIST))
+def test_lists_that_there_are_not_are_refused_in_every_message(bench: Bench, name: str, kind: int) -> None:
+    bench.autopilot.items = old = tuple(SQUARE)
+    (ack,) = bench.ask(OF_A_LIST[name](kind), "MISSION_ACK")
+    assert (ack.type, ack.mission_type) == (UNSUPPORTED, kind)
+    assert (ack.target_system, ack.target_component) == (255, 190)
+    bench.run(10.0)
+    assert bench.autopilot.items is old and bench.client.receive("MISSION_ACK", "MISSION_REQUEST") == []

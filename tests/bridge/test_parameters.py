@@ -233,10 +233,12 @@ def test_ground_stations_read_what_parameters_mean(bench: Bench) -> None:
     assert said.uri.startswith(b"mftp://")
     general = fetch(bench, said.uri.removeprefix(b"mftp://"))
     assert said.file_crc == crc(general)
+    assert json.loads(general)["version"] == 1
     (entry,) = json.loads(general)["metadataTypes"]
     assert entry["type"] == 1
     data = fetch(bench, entry["uri"].removeprefix("mftp://").encode())
     assert entry["fileCrc"] == file_crc(data)
+    assert json.loads(data)["version"] == 1
     told = {p["name"]: p for p in json.loads(data)["parameters"]}
     assert list(told) == list(TABLE.names())
     assert told["ANGLE_MAX"] == {

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from sitl.bridge.copter import status_messages as copter_status
 from sitl.bridge.telemetry import fence_status, status
 from sitl.bridge.telemetry.high_latency import FAILURES, failures
 from sitl.core.mavlink import MavSysStatus
@@ -99,6 +100,28 @@ def test_boards_and_clocks(v: Any) -> None:
 def test_kinds_of_breaches(breached: int, kind: int) -> None:
     """FENCE_TYPE: 1 highest, 2 circle, 4 polygons, 8 lowest; FENCE_BREACH: 1 below, 2 above, 3 outside."""
     assert fence_status.breach_type(breached) == kind
+
+
+@pytest.mark.parametrize(
+    ("on", "kinds", "action", "is_at_work"),
+    [
+        (0, 7.0, 1.0, False),
+        (7, 7.0, 1.0, True),
+        (7, 7.0, 0.0, False),
+        (2, 7.0, 2.0, True),
+        (2, 5.0, 1.0, False),
+        (7, 4.0, 1.0, True),
+    ],
+)
+def test_a_fence_is_at_work_while_it_is_on_and_does_something(
+    v: Any, on: int, kinds: float, action: float, is_at_work: bool
+) -> None:
+    """FENCE_ACTION 0 only reports."""
+    v.autopilot.fence.on, v.autopilot.fence.shapes = on, 1
+    v.autopilot.params["FENCE_TYPE"], v.autopilot.params["FENCE_ACTION"] = kinds, action
+    assert fence_status.is_at_work(v) is is_at_work
+    enabled = says(copter_status.sys_status, v).onboard_control_sensors_enabled
+    assert bool(enabled & MavSysStatus.GEOFENCE) is is_at_work
 
 
 def test_a_fence_that_is_on_tells_of_its_breaches(v: Any) -> None:

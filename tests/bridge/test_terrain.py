@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.terrain.grid import PARTS, around, block_of
 from sitl.bridge.dialect import message
@@ -158,3 +160,37 @@ def test_a_home_above_the_ground_needs_the_ground_there() -> None:
     ground = bench.bridge.get(TerrainService).rise(lat, lon)
     assert ground == 50.0
     assert alt == bench.bridge.locations.home_alt() + ground + 5.0
+
+
+FAR = HOME[0] + 900_000, HOME[1] + 500_000
+
+
+@pytest.mark.parametrize(
+    ("item", "is_asked_for"),
+    [
+        (MissionItem(MavCmd.NAV_WAYPOINT, x=FAR[0], y=FAR[1], z=10.0), True),
+        (MissionItem(MavCmd.NAV_LAND, x=FAR[0], y=FAR[1]), True),
+        (MissionItem(MavCmd.DO_SET_ROI_LOCATION, x=FAR[0], y=FAR[1]), True),
+        (MissionItem(MavCmd.NAV_LAND), False),
+        (MissionItem(MavCmd.DO_DIGICAM_CONTROL, x=FAR[0], y=FAR[1]), False),
+        (MissionItem(MavCmd.DO_CHANGE_SPEED, x=FAR[0], y=FAR[1]), False),
+    ],
+)
+def test_the_ground_at_a_single_item_is_asked_for(item: MissionItem, is_asked_for: bool) -> None:
+    bench = Ground()
+    bench.autopilot.items = (home_item(HOME[0], HOME[1], 0.0), item)
+    asked = {(m.lat, m.lon) for m in bench.requests(24.0)}
+    there = block_of(item.x, item.y, 100.0)
+    assert there not in around(HOME[0], HOME[1], 100.0)
+    assert (there in asked) == is_asked_for
+    assert len(asked) == 9 + is_asked_for
+
+
+def test_neither_home_nor_the_way_from_it_is_of_the_mission() -> None:
+    bench = Ground()
+    bench.vehicle.v.autopilot.home.is_set = 0
+    bench.autopilot.items = (
+        home_item(FAR[0], FAR[1], 0.0),
+        MissionItem(MavCmd.NAV_WAYPOINT, x=HOME[0], y=HOME[1], z=10.0),
+    )
+    assert {(m.lat, m.lon) for m in bench.requests(24.0)} == set(around(HOME[0], HOME[1], 100.0))

@@ -228,3 +228,14 @@ def test_the_two_ends_keep_step_over_a_link_that_loses_every_seventh_datagram():
         assert autopilot.receive(line(0.0025 * physics.steps)) is not None
         assert autopilot.time == 0.0025 * physics.steps
     assert autopilot.count == physics.steps == 200
+
+
+@pytest.mark.parametrize("first", [b"\0", b"\x81"])
+def test_what_is_no_frame_is_not_taken_for_the_one_that_is_answered_already(first):
+    physics = TwoLines()
+    physics.receive(frame(0, 800))
+    assert physics.receive(first + frame(1, 800)[1:]) is Asked.NOTHING
+    assert (physics.end.refused, physics.end.count) == (1, 0)
+    assert physics.receive(frame(1, 800), THERE) is Asked.NOTHING, "of another autopilot"
+    assert (physics.end.refused, physics.end.count) == (2, 0)
+    assert physics.receive(frame(1, 800)) is Asked.AHEAD

@@ -11,7 +11,7 @@ import pytest
 
 from sitl.bridge.ardupilot_json.answer import MotionError
 from sitl.bridge.ardupilot_json.answer import decode as decode_motion
-from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode
+from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode, is_frame
 from tests.foreign import json_lines
 
 
@@ -106,3 +106,19 @@ def test_what_is_no_motion_is_refused_with_the_reason(change, why):
 def test_what_is_no_json_is_refused(text):
     with pytest.raises(MotionError):
         decode_motion(text.encode())
+
+
+FRAMES = [
+    struct.pack(f"<HHI{count}H", magic, 400, 7, *(1500,) * count) for magic in (18458, 29569) for count in (16, 32)
+]
+"""Each number at the beginning with each size: two of them are frames."""
+
+
+@pytest.mark.parametrize("datagram", [*FRAMES, *(frame[:-1] for frame in FRAMES), FRAMES[0][:2], b"", b"Z"])
+def test_what_is_known_as_a_frame_at_a_glance_is_one(datagram):
+    try:
+        decode(datagram)
+    except ServoError:
+        assert not is_frame(datagram)
+    else:
+        assert is_frame(datagram)

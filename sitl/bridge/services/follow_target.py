@@ -24,7 +24,7 @@ from .setpoint_messages import rotation
 HEADINGS = 36_000
 """Headings of GLOBAL_POSITION_INT are 0 .. 36000 [centidegrees]; more: unknown."""
 HAS_POSITION, HAS_VELOCITY, HAS_ACCELERATION, HAS_ATTITUDE = 1, 2, 4, 8
-"""est_capabilities"""
+"""est_capabilities; attitude stands for body rates, too."""
 
 
 class FollowTarget(Message, name="FOLLOW_TARGET"):
@@ -71,10 +71,10 @@ def follow_target(m: FollowTarget, v: Vehicle, sender: int) -> None:
     vel = vector(m.vel) if (has & HAS_VELOCITY) != 0 else ZERO
     acc = vector(m.acc) if (has & HAS_ACCELERATION) != 0 else ZERO
     body = rotation(m.attitude_q)
-    turn = rotate(body.q, vector(m.rates)).z
+    has_heading = (has & HAS_ATTITUDE) != 0 and body.is_given
+    turn = rotate(body.q, vector(m.rates)).z if has_heading else 0.0
     if not local.is_known or not finite(vel.x + vel.y + vel.z + acc.x + acc.y + acc.z + turn):
         return
-    has_heading = (has & HAS_ATTITUDE) != 0 and body.is_given
     take(lead, p, sender, Report(local.pos, vel, acc, has_heading, yaw_of(body.q), turn), v.time_us)
     lead.sends_more = True
 

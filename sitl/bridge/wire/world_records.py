@@ -35,7 +35,7 @@ def run_in_worlds(
         first, count: of those that go on.
         slots: address of one ``Slot`` for each vehicle.
         ranging: address of one ``Ranging`` for each vehicle.
-        room: size of one [bytes].
+        ranging_size: of one [bytes].
         step_us: for how long; STAYS: as the slots say.
     """
     waits = False

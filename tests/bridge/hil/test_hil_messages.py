@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -251,3 +252,33 @@ def test_sticks() -> None:
         taker.read(rc_inputs.sticks_payload(5000, (1500, 3000)))
     kind, payload = rc_inputs.frame_for(True, 5000, (1500, 1100))
     assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100
+
+
+CUT: dict[str, tuple[Any, Any, dict[str, Any]]] = {
+    "HIL_SENSOR": (sensor.SensorReader.read, sensor.SENSOR_KIND, {"time_usec": 2500, "zacc": -9.75}),
+    "BATTERY_STATUS": (sensor.BatteryReader.read, sensor.BATTERY_KIND, {"voltages": (12_500,) + (0,) * 9}),
+    "DISTANCE_SENSOR": (ranging.DistanceReader.read, ranging.DISTANCE, {"current_distance": 120, "orientation": 25}),
+    "DEBUG_VECT": (ranging.RangeReader.read, ranging.VECTOR, {"name": b"RANGE", "x": 1.25}),
+    "HIL_RC_INPUTS_RAW": (rc_inputs.SticksReader.read, rc_inputs.KIND, {"time_usec": 2500, "chan1_raw": 1500}),
+    "HIL_STATE_QUATERNION": (truth.read_truth, truth.TRUTH_KIND, {"attitude_quaternion": (1.0, 0.0, 0.0, 0.0)}),
+    "HIL_ACTUATOR_CONTROLS": (controls.read_controls, controls.KIND, {"time_usec": 2500, "controls": (0.5, 0.25)}),
+}
+"""Name -> what reads it, its kind, fields before the zeros at its end."""
+
+
+@pytest.mark.parametrize("name", sorted(CUT))
+def test_zeros_at_its_end_that_a_message_comes_without_are_read(name: str) -> None:
+    read, kind, fields = CUT[name]
+    whole = kind.payload(**fields)
+    cut = whole.rstrip(b"\0")
+    assert len(cut) < len(whole) and read(cut) == read(whole) is not None
+
+
+@pytest.mark.parametrize("samples, ranges", [(58, 57), (58, 1), (58, 0), (40, 0)])
+def test_a_scan_that_ends_in_contact_is_read(samples: int, ranges: int) -> None:
+    taker = ranging.ScanReader(Vehicle().v, samples)
+    given = [2.5] * ranges + [0.0] * (samples - ranges) + [math.nan] * (ranging.PART - samples)
+    payload = ranging.SCAN.payload(time_usec=2500, name=b"LASER", data=given)
+    part = taker.read(payload.rstrip(b"\0"))
+    assert part is not None
+    assert (part[0], part[1], part[2].tolist()) == (2500, 0, given[:samples])

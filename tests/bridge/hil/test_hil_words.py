@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.dialect import message
-from sitl.bridge.hil.autopilot_end import TAKEN, WAITING
+from sitl.bridge.frame import Splitter
+from sitl.bridge.hil.autopilot_end import TAKEN, WAITING, AutopilotEnd
 from sitl.bridge.hil.protocol import Sender
-from tests.bridge.hil.hil_bench import Bench
+from tests.bridge.hil.hil_bench import Bench, Vehicle
 
 SENDER = Sender(1, 200)
 
@@ -46,3 +50,57 @@ def test_words_cost_no_tick(bench: Bench) -> None:
     assert bench.here.controls() == controls, "the same once more: nothing was answered"
     assert bench.here.feed(bench.there.feed(controls)) == TAKEN
     assert bench.autopilot.v.time_us == 2500
+
+
+def heard(data: bytes) -> list[tuple[Any, ...]]:
+    """Sender, name and fields of each frame."""
+    return [(f.system, f.component, f.kind.name, f.kind.decode(f.payload)) for f in Splitter().feed(data)]
+
+
+@pytest.mark.parametrize("vehicle_type", [2, 10, 13])
+def test_the_first_words_say_who_it_is_and_what_the_world_is_to_be(vehicle_type: int) -> None:
+    vehicle = Vehicle()
+    end = AutopilotEnd(vehicle.fleet, vehicle.index, vehicle.v, vehicle_type)
+    first, *rest = heard(end.hello({"SIM_WIND_SPD": 4.5, "SIM_BATT_VOLTAGE": 12.0}))
+    assert first[:3] == (1, 1, "HEARTBEAT")
+    said = first[3]._asdict()
+    assert said == {
+        "type": vehicle_type,
+        "autopilot": mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
+        "base_mode": mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED,
+        "custom_mode": 0,
+        "system_status": mavlink.MAV_STATE_ACTIVE,
+        "mavlink_version": 3,
+    }
+    told = [(*who[:3], who[3].param_id, who[3].param_value, who[3].param_type) for who in rest]
+    assert told == [
+        (1, 1, "PARAM_SET", b"SIM_WIND_SPD", 4.5, mavlink.MAV_PARAM_TYPE_REAL32),
+        (1, 1, "PARAM_SET", b"SIM_BATT_VOLTAGE", 12.0, mavlink.MAV_PARAM_TYPE_REAL32),
+    ]
+
+
+def test_what_the_physics_is_asked(bench: Bench) -> None:
+    end = bench.here
+    asked = [fields for _, _, _, fields in heard(end.ask_truth() + end.ask_state() + end.ask_reboot())]
+    assert [(f.command, f.param1, f.param2, f.confirmation) for f in asked] == [
+        (mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_HIL_STATE_QUATERNION, 0.0, 0),
+        (mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_HIL_SENSOR, 0.0, 0),
+        (mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0, 0.0, 0),
+    ]
+
+
+def test_a_parameter_that_the_physics_took_is_told_as_one_that_nobody_counts(bench: Bench) -> None:
+    kind = message("PARAM_SET")
+    fields = {"param_id": b"SIM_WIND_SPD", "param_value": 3.5, "param_type": mavlink.MAV_PARAM_TYPE_REAL32}
+    ((_, _, name, told),) = heard(bench.there.feed(SENDER.frame(kind, kind.payload(**fields))))
+    assert (name, told.param_id, told.param_value) == ("PARAM_VALUE", b"SIM_WIND_SPD", 3.5)
+    assert (told.param_type, told.param_count, told.param_index) == (mavlink.MAV_PARAM_TYPE_REAL32, 1, 65535)
+
+
+@pytest.mark.parametrize("system, component", [(1, 1), (7, 191)])
+def test_who_commands_the_physics_is_answered(bench: Bench, system: int, component: int) -> None:
+    kind = message("COMMAND_LONG")
+    asked = Sender(system, component).frame(kind, kind.payload(command=mavlink.MAV_CMD_DO_JUMP))
+    ((_, _, name, told),) = heard(bench.there.feed(asked))
+    assert (name, told.command, told.result) == ("COMMAND_ACK", mavlink.MAV_CMD_DO_JUMP, mavlink.MAV_RESULT_UNSUPPORTED)
+    assert (told.target_system, told.target_component) == (system, component)

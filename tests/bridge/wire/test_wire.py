@@ -336,6 +336,15 @@ def test_lost_frames_are_counted_for_each_sender(channel: Channel, v: Copter) ->
     assert (channel.port.received, channel.port.lost) == (5, 2)
 
 
+def test_of_more_senders_than_it_knows_a_port_counts_the_first(channel: Channel, v: Copter) -> None:
+    kind, known = message("PING"), 32
+    for sequence in (250, 255, 5):  # four and five between them are lost
+        for system in range(1, known + 9):
+            hear(channel, v, encode_v2(kind, kind.payload(target_system=9), sequence, system, 190))
+    assert channel.port.received == 3 * (known + 8) and channel.port.sender_count == known
+    assert channel.port.lost == (4 + 5) * known
+
+
 # ---------------------------------------------------------------------- memory
 
 
