@@ -31,7 +31,7 @@ def chain(depth, only_the_last=False):
         nonlocal text, times
         module = str(self._final_module)
         text += len(module)
-        times += "define linkonce_odr" in module and "2f0B" in module or self.name.startswith("f0")
+        times += "2f0B" in module  # in its symbol
         if not only_the_last or self.name.startswith(f"f{depth - 1}"):
             optimise(self)
 

@@ -88,6 +88,7 @@ def spawn(order: Order, task: str) -> int:
 def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:
     """Compile them side by side, in this order; returns 1 after the first that fails."""
     start: Callable[[str], int]
+    early: list[str] = []
     if FORKS:
         import numba.core.registry
 
@@ -96,9 +97,10 @@ def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:
         numba.core.registry.cpu_target.target_context.refresh()
         gc.freeze()  # a tenth of the time, else, goes into looking for garbage among all that was loaded here
         start = lambda task: fork(order, task.partition(":")[2])  # noqa: E731
+        if order.path != KERNELS_PATH:
+            early = [task for task in tasks if UNITS[task.partition(":")[2]].inline]
     else:
         start = lambda task: spawn(order, task)  # noqa: E731
-    early = [task for task in tasks if order.path != KERNELS_PATH and UNITS[task.partition(":")[2]].inline]
     waiting, running = [*early, *(task for task in tasks if task not in early)], dict[int, str]()
     shares = FORKS and len(tasks) - len(early) >= ENOUGH
     while waiting or running:

@@ -116,3 +116,14 @@ def test_for_a_few_units_nothing_is_shared(units: list[str], monkeypatch: pytest
 def test_kernels_share_them_too(monkeypatch: pytest.MonkeyPatch) -> None:
     tasks = [f"math:kernel{k}" for k in range(ENOUGH)]
     assert started(tasks, KERNELS_PATH, 2, monkeypatch) == ["(shared laws)", *(f"kernel{k}" for k in range(ENOUGH))]
+
+
+def test_where_a_process_cannot_be_copied_each_unit_has_one_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The process that starts them has loaded no unit, and compiles nothing."""
+    steps: list[str] = []
+    monkeypatch.setattr(worker, "FORKS", False)
+    monkeypatch.setattr(worker, "spawn", lambda order, task: steps.append(task) or len(steps))
+    monkeypatch.setattr(worker, "compile_once", lambda: steps.append("(shared laws)"))
+    monkeypatch.setattr(worker.os, "wait", lambda: (len(steps), 0))
+    tasks = [f"no_such_module:unit{k}" for k in range(ENOUGH)]
+    assert worker.compile_all(Order("a.Record"), 1, tasks) == 0 and steps == tasks
