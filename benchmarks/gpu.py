@@ -17,14 +17,14 @@ from typing import Any
 import numpy as np
 
 from sitl import vehicles
-from sitl.core import device
-from sitl.core.device import MachineCode
 from sitl.errors import SitlError
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
 
+from . import gpu_code
 from .__main__ import begin, go_on
 from .cuda_driver import Gpu, NoGpuError
+from .gpu_code import MachineCode
 
 Array = np.ndarray[Any, Any]
 SIZES = (1024, 4096, 16_384, 65_536, 131_072)
@@ -37,9 +37,9 @@ CHECKED, CHECKED_TICKS = 64, (1, 40, TICKS)
 def compiled(kind: str, generation: tuple[int, int]) -> MachineCode:
     """The kernel of a kind of vehicle; prints what it takes."""
     begun = time.perf_counter()
-    ptx = device.ptx_of(KINDS[kind].advance, KINDS[kind].record_path, generation)
+    ptx = gpu_code.ptx_of(KINDS[kind].advance, KINDS[kind].record_path, generation)
     between = time.perf_counter()
-    code = device.assemble(ptx)
+    code = gpu_code.assemble(ptx)
     print(
         f"{kind}, sm_{generation[0]}{generation[1]}: {ptx.text.count(chr(10)):,} lines of PTX in "
         f"{between - begun:.0f} s, {code.instructions:,} instructions in {time.perf_counter() - between:.0f} s; "

@@ -55,7 +55,6 @@ EXCEPTIONS = [
             "sitl/bridge/dialect.py",
             "sitl/bridge/hil/sensor.py",
             "sitl/bridge/telemetry/high_latency.py",
-            "sitl/core/device.py",
             "sitl/missions/cli/replay.py",
             "sitl/missions/comparison/report.py",
             "sitl/missions/testing/factory.py",

@@ -72,7 +72,7 @@ def simulate() -> None:
     """``NUMBA_ENABLE_CUDASIM=1``: five vehicles in two blocks of four threads."""
     from numba import cuda
 
-    from sitl.core.device_kernel import kernel
+    from benchmarks.gpu_kernel import kernel
 
     here, there = fleet_of(5), fleet_of(5)
     for k in range(5):

@@ -19,13 +19,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-from ..errors import MissingExtra
-from .code_cache import BuildError
-from .compile import make_jitable, record_class
-from .kernels import UNITS
-from .numba_tuning import law_options
-from .records import Record
-from .vectors import Value
+from sitl.core.code_cache import BuildError
+from sitl.core.compile import make_jitable, record_class
+from sitl.core.kernels import UNITS
+from sitl.core.numba_tuning import law_options
+from sitl.core.records import Record
+from sitl.core.vectors import Value
+from sitl.errors import MissingExtra
 
 Generation = tuple[int, int]
 """Compute capability of a GPU: (8, 0) A100, (9, 0) H100 and H200."""
@@ -83,8 +83,9 @@ def modules_of(unit: Callable[..., None], path: str, generation: Generation = (9
     from numba import types
     from numba.cuda.compiler import compile_cuda, kernel_fixup
 
-    from .device_kernel import kernel
-    from .numba_records import numba_type
+    from sitl.core.numba_records import numba_type
+
+    from .gpu_kernel import kernel
 
     _make_known(unit)
     arguments = (types.Array(numba_type(record_class(path)), 1, "C"), types.int64)
@@ -154,8 +155,8 @@ def _make_known(unit: Callable[..., None]) -> None:
     from numba.extending import overload
 
     make_jitable()
-    from .numba_records import _typeof_class
-    from .numba_vectors import _typeof
+    from sitl.core.numba_records import _typeof_class
+    from sitl.core.numba_vectors import _typeof
 
     if not _known:
         typeof_impl.register(Value)(_typeof)

@@ -16,17 +16,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import cuda_driver, gpu
+from benchmarks import cuda_driver, gpu, gpu_code
 from benchmarks.__main__ import begin, go_on
 from sitl import vehicles
-from sitl.core import device
 from sitl.errors import MissingExtra
 from sitl.simulation import load_core
 from sitl.vehicle.kinds import KINDS
-from tests.core import device_units
-from tests.core.device_on_cpu import OnCpu
-from tests.core.device_units import RECORD, Turtlebot, fleet_of, roll, turn
-from tests.core.fake_cuda import FakeDriver
+from tests.gpu import gpu_units
+from tests.gpu.fake_cuda import FakeDriver
+from tests.gpu.gpu_units import RECORD, Turtlebot, fleet_of, roll, turn
+from tests.gpu.on_cpu import OnCpu
 
 ROOT = Path(__file__).parents[2]
 needs_cuda = pytest.mark.skipif(
@@ -44,33 +43,33 @@ def in_python(fleet, ticks, unit=roll):
 @needs_cuda
 def test_a_unit_has_the_same_bits():
     fleet = fleet_of(3)
-    OnCpu(*device.modules_of(roll, RECORD))(fleet, 20)
+    OnCpu(*gpu_code.modules_of(roll, RECORD))(fleet, 20)
     assert fleet.tobytes() == in_python(fleet_of(3), 20).tobytes() != fleet_of(3).tobytes()
 
 
 @needs_cuda
 def test_elementary_functions_have_the_same_bits_and_are_nobody_elses():
     fleet = fleet_of(3)
-    OnCpu(*device.modules_of(turn, RECORD))(fleet, 30)
+    OnCpu(*gpu_code.modules_of(turn, RECORD))(fleet, 30)
     assert fleet.tobytes() == in_python(fleet_of(3), 30, turn).tobytes() != fleet_of(3).tobytes()
-    text = device.ptx_of(turn, RECORD).text
+    text = gpu_code.ptx_of(turn, RECORD).text
     assert "fma.rn" not in text and not re.search(r"__nv_|\.approx", text)
 
 
 @needs_cuda
 @pytest.mark.parametrize("generation", [(8, 0), (9, 0)])
 def test_nvidias_compilers_take_a_unit_and_fuse_nothing(generation):
-    ptx = device.ptx_of(roll, RECORD, generation)
+    ptx = gpu_code.ptx_of(roll, RECORD, generation)
     assert f".target sm_{generation[0]}{generation[1]}\n" in ptx.text and f".entry {ptx.name}(" in ptx.text
     assert "mul.f64" in ptx.text.replace(".rn", "") and "fma.rn" not in ptx.text
-    code = device.assemble(ptx)
+    code = gpu_code.assemble(ptx)
     assert code.cubin.startswith(b"\x7fELF") and 0 < code.registers <= 255 and 50 < code.instructions < 5000
 
 
 @needs_cuda
 def test_a_kernel_runs_in_the_simulator():
     environment = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-m", device_units.__name__]
+    command = [sys.executable, "-m", gpu_units.__name__]
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert done.stdout == "the same\n", done.stderr
 
@@ -84,7 +83,7 @@ def test_a_whole_vehicle_has_the_bits_of_the_core(kind):
     go_on(core, here)
     there = gpu.copy_of(here)
     core(here, 0, 800)
-    OnCpu(*device.modules_of(KINDS[kind].advance, KINDS[kind].record_path))(there, 800)
+    OnCpu(*gpu_code.modules_of(KINDS[kind].advance, KINDS[kind].record_path))(there, 800)
     assert here["time_us"] == there["time_us"] and (here.view(np.uint8) == there.view(np.uint8)).all()
 
 
@@ -94,10 +93,10 @@ def test_what_is_missing_is_named(monkeypatch, capsys):
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MissingExtra, match=r"gym-sitl\[cuda\]"):
-        device.ptx_of(roll, RECORD)
-    monkeypatch.setattr(device.shutil, "which", lambda name: None)
+        gpu_code.ptx_of(roll, RECORD)
+    monkeypatch.setattr(gpu_code.shutil, "which", lambda name: None)
     with pytest.raises(MissingExtra, match="ptxas"):
-        device.assemble(device.Ptx("name", "", (9, 0)))
+        gpu_code.assemble(gpu_code.Ptx("name", "", (9, 0)))
     monkeypatch.setattr(cuda_driver.ctypes, "CDLL", nothing)
     monkeypatch.setattr(sys, "argv", ["benchmarks.gpu"])
     with pytest.raises(SystemExit, match=r"no NVIDIA driver: libcuda.*--compile-only needs none"):
@@ -115,7 +114,7 @@ def test_the_benchmark_checks_and_measures(monkeypatch, capsys, tmp_path):
     driver = FakeDriver(kernel, kind.record.dtype)
     monkeypatch.setattr(cuda_driver.ctypes, "CDLL", lambda name: driver)
     monkeypatch.setattr(gpu, "SIZES", (65,))
-    gpu.save(device.MachineCode("kernel", b"code", 255, 0, 9), tmp_path, "rover")
+    gpu.save(gpu_code.MachineCode("kernel", b"code", 255, 0, 9), tmp_path, "rover")
     monkeypatch.setattr(sys, "argv", ["benchmarks.gpu", "--vehicle", "rover", "--code", str(tmp_path)])
     gpu.main()
     out = capsys.readouterr().out
