@@ -16,18 +16,26 @@ OLDEST, NEXT = (0, 60), (0, 69)
 
 REPLACED = {
     "quick": {
-        "numba.core.codegen:CPUCodeLibrary._optimize_final_module": 1,
-        "numba.core.codegen:CPUCodeLibrary._finalize_final_module": 1,
+        "numba.core.codegen:CPUCodeLibrary.finalize": 1,
         "numba.core.cpu:CPUContext.get_executable": 4,
+        "numba.core.event:start_event": 2,
+        "numba.core.event:end_event": 3,
     },
     "trust_laws": {"numba.core.callconv:CPUCallConv.call_function": 7},
 }
-"""Patch -> each method that it replaces, as module:name -> how many arguments Numba gives it, self included."""
+"""Patch -> each method or function that it replaces, as module:name -> how many arguments Numba gives it, self
+included."""
 
 USED = {
     "quick": {
+        "numba.core.codegen:CPUCodeLibrary._final_module": None,
         "numba.core.codegen:CPUCodeLibrary._finalize_dynamic_globals": 1,
+        "numba.core.codegen:CPUCodeLibrary._get_module_for_linking": 1,
+        "numba.core.codegen:CPUCodeLibrary._linking_libraries": None,
+        "numba.core.codegen:CPUCodeLibrary._shared_module": None,
         "numba.core.codegen:CodeLibrary._finalized": None,
+        "numba.core.codegen:CodeLibrary._raise_if_finalized": 1,
+        "numba.core.codegen:CodeLibrary._reload_init": None,
         "numba.core.codegen:CodeLibrary.name": None,
     },
     "trust_laws": {

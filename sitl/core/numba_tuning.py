@@ -16,6 +16,8 @@ from typing import Any
 from .numba_internals import REPLACED, fits, why_not
 
 _NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_EACH_CALL_OF_LLVM = "numba:llvm_lock"
+"""An event that Numba tells, at each call of LLVM, to the timers of all laws that are being compiled."""
 
 
 TRUST = "laws do not fail"
@@ -45,14 +47,17 @@ def summary() -> str:
 
 
 @contextlib.contextmanager
-def quick(entry: str) -> Iterator[None]:
-    """While it lasts, only code of libraries whose name contains ``entry`` is optimised as a whole and becomes machine
-    code.
+def quick(entry: str, machine_code: bool = True) -> Iterator[None]:
+    """While it lasts, only libraries whose name contains ``entry`` are put together, optimised and become machine code.
 
     All that an entry calls is linked into it and optimised there, so that what Numba does for each law beforehand, for
     the sake of calls from Python, is done twice; of a law that calls others, as many times as there are callers above.
+
+    Args:
+        entry: part of a name.
+        machine_code: without it, the entry's library holds all that it calls, as it was written.
     """
-    restore = _skip_inner_work(entry) if fits("quick") else None
+    restore = _skip_inner_work(entry, machine_code) if fits("quick") else None
     try:
         yield
     finally:
@@ -60,39 +65,76 @@ def quick(entry: str) -> Iterator[None]:
             restore()
 
 
-def _skip_inner_work(entry: str) -> Callable[[], None]:
+def _skip_inner_work(entry: str, machine_code: bool) -> Callable[[], None]:
+    from numba.core import event
     from numba.core.codegen import CPUCodeLibrary
     from numba.core.cpu import CPUContext
 
-    optimise, finalize = CPUCodeLibrary._optimize_final_module, CPUCodeLibrary._finalize_final_module
-    executable = CPUContext.get_executable
-
-    def optimise_entry_only(self: Any) -> None:
-        if entry in self.name:
-            optimise(self)
+    own_module = CPUCodeLibrary._get_module_for_linking
+    finalize, executable = CPUCodeLibrary.finalize, CPUContext.get_executable
+    start, end = event.start_event, event.end_event
 
     def finalize_entry_only(self: Any) -> None:
+        self._raise_if_finalized()
         if entry in self.name:
-            finalize(self)
-        else:  # IR is all that the caller links
-            self._finalize_dynamic_globals()
-            self._finalized = True
+            _link_all(self, own_module)
+            if machine_code:
+                self._linking_libraries = []
+                finalize(self)
+                return
+        else:  # a caller that is compiled later takes all from it, as ever
+
+            def whole() -> Any:
+                del self._get_module_for_linking
+                _link_all(self, own_module)
+                self._shared_module = None
+                return self._get_module_for_linking()
+
+            self._get_module_for_linking = whole
+        self._finalize_dynamic_globals()
+        self._finalized = True
 
     def executable_of_entry_only(self: Any, library: Any, fndesc: Any, env: Any) -> Any:
-        if entry in library.name:
+        if machine_code and entry in library.name:
             return executable(self, library, fndesc, env)
         return [].append  # Numba keeps laws by their callables: it must be built in, and another one each time
 
-    CPUCodeLibrary._optimize_final_module = optimise_entry_only
-    CPUCodeLibrary._finalize_final_module = finalize_entry_only
-    CPUContext.get_executable = executable_of_entry_only
+    def start_if_asked(kind: Any, data: Any = None) -> None:
+        if kind != _EACH_CALL_OF_LLVM:
+            start(kind, data)
+
+    def end_if_asked(kind: Any, data: Any = None, exc_details: Any = None) -> None:
+        if kind != _EACH_CALL_OF_LLVM:
+            end(kind, data, exc_details)
+
+    CPUCodeLibrary.finalize, CPUContext.get_executable = finalize_entry_only, executable_of_entry_only
+    event.start_event, event.end_event = start_if_asked, end_if_asked
 
     def restore() -> None:
-        CPUCodeLibrary._optimize_final_module = optimise
-        CPUCodeLibrary._finalize_final_module = finalize
-        CPUContext.get_executable = executable
+        CPUCodeLibrary.finalize, CPUContext.get_executable = finalize, executable
+        event.start_event, event.end_event = start, end
 
     return restore
+
+
+def _link_all(library: Any, own_module: Callable[[Any], Any]) -> None:
+    """Link what a library calls, and what that calls: each behind all that call it, because LLVM takes from a module
+    what was asked for before."""
+    found: set[int] = set()
+    backwards: list[Any] = []
+
+    def visit(called: Any) -> None:
+        if id(called) not in found:
+            found.add(id(called))
+            for further in called._linking_libraries:
+                visit(further)
+            backwards.append(called)
+
+    for called in library._linking_libraries:
+        visit(called)
+    for called in reversed(backwards):
+        library._reload_init.update(called._reload_init)
+        library._final_module.link_in(own_module(called), preserve=True)
 
 
 @contextlib.contextmanager

@@ -188,7 +188,7 @@ def _translate(
     space = {"__name__": name, **names}
     exec(compile(source, f"<{name}>", "exec"), space)
     made: Any = CFunc(space[ENTRY], (signature.args, signature.return_type), {}, options)
-    with quick("no library"), trust_laws():
+    with quick(ENTRY, machine_code=False), trust_laws():
         result = made._compile_uncached()
         if not result.library._finalized:
             result.library.finalize()
