@@ -160,7 +160,7 @@ class PhysicsServer:
         end.greet()
         receive, send, feed = connection.recv, connection.sendall, end.feed
         silence = Silence(self._say, self._time)
-        exchanges = 0
+        exchanges, is_told = 0, False
         try:
             while running():
                 wait_s = end.wait_s
@@ -187,6 +187,10 @@ class PhysicsServer:
                 if exchanges % LOOK_EXCHANGES == 0:
                     self._refuse_others()
                 if end.freewheels:
+                    if not is_told:
+                        since = f"from {self._time()} on time goes by itself, in real time"
+                        self._say(f"the autopilot does not drive yet: {since}")
+                        is_told = True
                     self._freewheel(connection, running)
         except TimeoutError:
             return "it does not read"
@@ -197,7 +201,6 @@ class PhysicsServer:
     def _freewheel(self, connection: socket.socket, running: Callable[[], bool]) -> None:
         """Go on by itself, in real time, until the autopilot is booted and drives."""
         end = self.end
-        self._say(f"the autopilot does not drive yet: from {self._time()} on time goes by itself, in real time")
         due = time.monotonic()
         while end.freewheels and running():
             wait = due - time.monotonic()

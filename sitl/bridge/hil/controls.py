@@ -102,8 +102,8 @@ def actuators_writer(fleet: np.ndarray[Any, Any], index: int) -> Callable[[Contr
     return put
 
 
-LATE = 400
-"""After so many late answers the clock must be another one than we think."""
+LATE = 20
+"""After so many silences, each after late answers alone, the clock must be another one than we think."""
 LONGEST_WAIT_S, SHORTEST_WAIT_S = 0.2, 0.005
 """Wall time that a tick waits for its answer. It begins with the first, and each tick without an answer halves it: who
 has been silent without a reason is not waited for in vain 400 times a second."""
@@ -125,7 +125,8 @@ class ForeignClock:
 
     What PX4 answers first may be a tick of some time ago, with others under way. Were each late answer a step, that
     many ticks would stay under way for good and its controls would always be so old: a step is only asked for once the
-    present tick is answered. Until then time has to go on by itself.
+    present tick is answered. Until then time has to go on by itself, but it stands while late answers come: what cannot
+    keep up with the wall clock, on a busy machine, would have more and more ticks under way.
 
     And PX4 may wait, too, for a tick that it has not got: its controls come when all that it calls lockstep components
     have run, and with IMU_INTEG_RATE below 400 its estimator does not run at each tick. So no tick waits for ever.
@@ -141,7 +142,7 @@ class ForeignClock:
         self._since = self._period = self._alike = 0
         self._first_us = self._answered_us = -1
         self._late = 0
-        self._is_in_step, self._is_lockstep = False, True
+        self._is_in_step, self._is_lockstep, self._catches_up = False, True, False
         self._lag_us = self._in_step_us = 0
         self._answers = self._in_vain = 0
         self._longest_s = LONGEST_WAIT_S
@@ -151,7 +152,9 @@ class ForeignClock:
     @property
     def holds(self) -> bool:
         """Whether time waits for its controls."""
-        return self._is_in_step and self._is_lockstep and not (self._rests and self.is_silent and not self._is_armed)
+        if not self._is_in_step:
+            return self._catches_up
+        return self._is_lockstep and not (self._rests and self.is_silent and not self._is_armed)
 
     @property
     def wait_s(self) -> float:
@@ -191,6 +194,10 @@ class ForeignClock:
 
     def gave_up(self) -> None:
         """The present tick has waited in vain."""
+        if not self._is_in_step:
+            self._catches_up = False
+            self._late += 1
+            return
         waited = self.wait_s > 0.0
         self.unanswered += 1
         self._in_vain += 1
@@ -206,8 +213,8 @@ class ForeignClock:
         is_new, self._answered_us = given.time_us > self._answered_us, max(given.time_us, self._answered_us)
         late_us = now_us - self._first_us - given.time_us
         if not self._is_in_step:
-            if late_us > 0 and late_us % TICK_US == 0 and self._late < LATE:
-                self._late += 1
+            if given.is_lockstep and late_us > 0 and late_us % TICK_US == 0 and self._late < LATE:
+                self._catches_up = True
                 return False
             self._is_in_step, self._lag_us, self._in_step_us = True, late_us, now_us
         late_us -= self._lag_us

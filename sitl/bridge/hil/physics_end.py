@@ -151,12 +151,13 @@ class PhysicsEnd:
     def go_on(self) -> bytes:
         """One tick without an answer."""
         if not self.freewheels:
-            if not self.clock.unanswered:
+            waited_s, before = self.clock.wait_s, self.clock.unanswered
+            self.clock.gave_up()
+            if before == 0 < self.clock.unanswered:
                 self.notes.append(
                     f"the autopilot has not answered the tick at {1e-6 * self._now:.4f} s in "
-                    f"{1e3 * self.clock.wait_s:.0f} ms: time goes on without it, and this is not said again"
+                    f"{1e3 * waited_s:.0f} ms: time goes on without it, and this is not said again"
                 )
-            self.clock.gave_up()
         return self._step()
 
     def feed(self, data: bytes) -> bytes:

@@ -200,6 +200,11 @@ def test_px4_time_goes_by_itself_until_it_drives() -> None:
     assert command.id == 76
 
 
+def driven(bench: Bench, time_us: int) -> bytes:
+    """What PX4 gets for its answer to a tick."""
+    return bench.say("HIL_ACTUATOR_CONTROLS", time_usec=time_us, controls=[0.4], flags=1)
+
+
 def test_px4_that_answers_late_is_waited_for_by_going_on() -> None:
     """Its clock counts from the first tick that it got: at 12.5 ms here it is 10 ms there."""
     bench = Bench()
@@ -207,11 +212,41 @@ def test_px4_that_answers_late_is_waited_for_by_going_on() -> None:
     bench.say("HEARTBEAT", autopilot=PX4)
     for _ in range(5):
         bench.there.go_on()
+    assert bench.there.freewheels
     for late in (5000, 7500):  # two ticks are still under way to it
-        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=late, controls=[0.4], flags=1) == b""
-        assert bench.there.freewheels
-    assert names(bench.say("HIL_ACTUATOR_CONTROLS", time_usec=10_000, controls=[0.4], flags=1))[-1] == "HIL_SENSOR"
+        assert driven(bench, late) == b""
+        assert not bench.there.freewheels and bench.there.wait_s == LONGEST_WAIT_S  # none is added to them
+    assert names(driven(bench, 10_000))[-1] == "HIL_SENSOR"
     assert not bench.there.freewheels and bench.there.time_us == 15_000
+
+
+def test_px4_that_cannot_keep_up_while_time_goes_by_itself_drives_with_present_controls_later() -> None:
+    """It answers one tick while the wall clock has gone on by three, for as long as it is let."""
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    answered, out = 0, b""
+    while not out:
+        for _ in range(3 * bench.there.freewheels):
+            bench.there.go_on()
+        out = driven(bench, 2500 * answered)
+        answered += 1
+        assert answered < 10
+    assert bench.there.time_us == 10_000  # three ticks, and the one that the answer to the last has led to
+    assert driven(bench, 2500 * (answered - 1)) == b"" and driven(bench, 2500 * answered) != b""
+    assert bench.there.notes == [] and bench.there.unanswered == 0
+
+
+def test_px4_that_falls_silent_before_it_drives_is_waited_for_by_going_on_again() -> None:
+    bench = Bench()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    for _ in range(4):
+        bench.there.go_on()
+    assert driven(bench, 2500) == b"" and not bench.there.freewheels
+    assert names(bench.there.go_on())[-1] == "HIL_SENSOR"  # nothing came within ``wait_s``
+    assert bench.there.freewheels and bench.there.notes == [] and bench.there.unanswered == 0
+    assert driven(bench, 10_000) != b"" and not bench.there.freewheels
 
 
 def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
@@ -219,12 +254,15 @@ def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
     bench.there.greet()
     bench.say("HEARTBEAT", autopilot=PX4)
     bench.there.go_on()
-    answers = 0
-    while bench.there.freewheels:
+    answers, out = 0, b""
+    while not out:
         bench.there.go_on()
-        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500 * answers, controls=[0.4], flags=1)
+        out = driven(bench, 2500 * answers)
         answers += 1
+        if not out:
+            assert not bench.there.freewheels
     assert answers == LATE + 1
+    assert driven(bench, 2500 * answers) != b""
 
 
 def booted_px4() -> Bench:
