@@ -152,14 +152,17 @@ def _ptxas() -> str:
 def _make_known(unit: Callable[..., None]) -> None:
     """Let device code use laws, vectors and units: on a device a unit is a law, there are no symbols to link to."""
     from numba.cuda.extending import typeof_impl
+    from numba.cuda.typing.enumdecl import EnumClassAttribute
     from numba.extending import overload
 
     make_jitable()
+    from sitl.core.numba_enums import _Members
     from sitl.core.numba_records import _typeof_class
     from sitl.core.numba_vectors import _typeof
 
     if not _known:
         typeof_impl.register(Value)(_typeof)
+        EnumClassAttribute.generic_resolve = _Members.generic_resolve  # numba-cuda has templates of its own
         typeof_impl.register(type(Record))(_typeof_class)
     for function in {*(known.function for known in UNITS.values()), unit} - _known:
         _known.add(function)

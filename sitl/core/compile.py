@@ -168,7 +168,7 @@ def _link(unit: Unit) -> None:
         f"    return lambda fleet, index{more}: call(fleet.ctypes.data, len(fleet), index{more})\n",
         space,
     )
-    overload(unit.function)(space["called"])
+    overload(unit.function, target="cpu")(space["called"])  # for other targets a unit has no symbol
 
 
 def _body(unit: Unit) -> Any:

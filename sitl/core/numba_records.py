@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 import sys
 import zlib
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, get_type_hints
 
 import numpy as np
 from llvmlite import ir
-from numba import carray
 from numba.core import cgutils, types
 from numba.core.compiler import Flags
 from numba.core.cpu import CPUContext
@@ -25,8 +25,8 @@ from numba.core.datamodel.models import OpaqueModel, RecordModel
 from numba.core.errors import NumbaAttributeError
 from numba.core.imputils import lower_constant, lower_getattr_generic, lower_setattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import intrinsic, overload, typeof_impl
-from numba.np.arrayobj import record_getattr, record_setattr
+from numba.extending import intrinsic, lower_builtin, overload, type_callable, typeof_impl
+from numba.np.arrayobj import make_array, populate_array, record_getattr, record_setattr
 from numba.np.numpy_support import map_layout
 
 from ..errors import did_you_mean
@@ -236,62 +236,56 @@ def _as_record(typing_context, cls, address):  # type: ignore[no-untyped-def]
     return cls.record(cls, types.int64), generate
 
 
-def _pointer_to(number: Any) -> Any:
-    """What makes an address a pointer to numbers of a type."""
-
-    @intrinsic
-    def pointer(typing_context, address):  # type: ignore[no-untyped-def]
-        def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-            return builder.inttoptr(args[0], context.get_value_type(sig.return_type))
-
-        return types.CPointer(number)(types.int64), generate  # type: ignore[attr-defined]
-
-    return pointer
-
-
-_MAKES_ARRAYS = {"_nrt": True}
-"""Numba lets no function return a new array without this."""
-_to_bytes, _to_floats, _to_ints = _pointer_to(types.uint8), _pointer_to(types.float64), _pointer_to(types.int64)
-
-
 # No annotations here: Numba compares these signatures with those of the functions.
 @overload(record_at)
 def _record_at(cls, address):  # type: ignore[no-untyped-def]
     return lambda cls, address: _as_record(cls, address)
 
 
-@overload(bytes_at, jit_options=_MAKES_ARRAYS)
-def _bytes_at(address, count):  # type: ignore[no-untyped-def]
-    return lambda address, count: carray(_to_bytes(address), (count,))
+def _array(context: Any, builder: Any, kind: Any, address: Any, lengths: Sequence[Any]) -> Any:
+    """The array of a type at an address. Made where it is asked for: Numba lets no function return a new array."""
+    size = context.get_constant(types.intp, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+    steps = [size]
+    for length in lengths[:0:-1]:
+        steps.insert(0, builder.mul(steps[0], length))
+    array = make_array(kind)(context, builder)
+    shape, strides = cgutils.pack_array(builder, lengths), cgutils.pack_array(builder, steps)
+    populate_array(array, data=address, shape=shape, strides=strides, itemsize=size, meminfo=None)
+    return array._getvalue()
 
 
-@overload(floats_at, jit_options=_MAKES_ARRAYS)
-def _floats_at(address, count):  # type: ignore[no-untyped-def]
-    return lambda address, count: carray(_to_floats(address), (count,))
+def _numbers_at(function: Callable[..., Any], number: Any) -> None:
+    """Let laws call a function of ``memory`` that takes an address and the lengths of the axes."""
+    axes = function.__code__.co_argcount - 1
+    kind = types.Array(number, axes, "C")
 
+    @type_callable(function)
+    def typing(context: Any) -> Any:
+        return (lambda address, count: kind) if axes == 1 else (lambda address, rows, columns: kind)
 
-@overload(table_at, jit_options=_MAKES_ARRAYS)
-def _table_at(address, rows, columns):  # type: ignore[no-untyped-def]
-    return lambda address, rows, columns: carray(_to_floats(address), (rows, columns))
-
-
-@overload(ints_at, jit_options=_MAKES_ARRAYS)
-def _ints_at(address, count):  # type: ignore[no-untyped-def]
-    return lambda address, count: carray(_to_ints(address), (count,))
-
-
-@intrinsic
-def _words(typing_context, record):  # type: ignore[no-untyped-def]
+    @lower_builtin(function, types.Integer, *[types.Integer] * axes)
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.bitcast(args[0], context.get_value_type(sig.return_type))
+        numbers = [context.cast(builder, *cast, types.intp) for cast in zip(args, sig.args, strict=True)]
+        address = builder.inttoptr(numbers[0], context.get_data_type(number).as_pointer())
+        return _array(context, builder, kind, address, numbers[1:])
 
-    return types.CPointer(types.int64)(record), generate  # type: ignore[attr-defined]
+
+for _function, _number in (
+    (bytes_at, types.uint8), (floats_at, types.float64), (table_at, types.float64), (ints_at, types.int64)
+):  # fmt: skip
+    _numbers_at(_function, _number)
 
 
-@overload(words_of, jit_options=_MAKES_ARRAYS)
-def _words_of(record):  # type: ignore[no-untyped-def]
-    count = record.dtype.itemsize // 8
-    return lambda record: carray(_words(record), (count,))
+@type_callable(words_of)
+def _type_words_of(context: Any) -> Any:
+    return lambda record: types.Array(types.int64, 1, "C")
+
+
+@lower_builtin(words_of, types.Record)
+def _words_of(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    address = builder.bitcast(args[0], context.get_data_type(types.int64).as_pointer())
+    count = context.get_constant(types.intp, sig.args[0].dtype.itemsize // 8)
+    return _array(context, builder, sig.return_type, address, [count])
 
 
 @intrinsic

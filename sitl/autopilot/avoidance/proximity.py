@@ -94,7 +94,8 @@ def mounted(angle: float, p: ProximitySensor) -> float:
 @law
 def sector_of(angle: float) -> int:
     """The sector that an angle [rad] is in; its left edge belongs to it."""
-    return math.floor(wrap_2pi(angle) / SECTOR + 0.5 + EDGE) % SECTORS
+    number = int(math.floor(wrap_2pi(angle) / SECTOR + 0.5 + EDGE))  # noqa: RUF046  a float on a GPU
+    return number % SECTORS
 
 
 @law
