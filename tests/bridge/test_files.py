@@ -153,6 +153,8 @@ def test_logs_are_listed_and_read(bench: Bench) -> None:
     (answer,) = bench.ask(request(CRC, b"logs/00000002.BIN"))
     own = zlib.crc32(contents[1], 0xFFFFFFFF) ^ 0xFFFFFFFF
     assert unpack(answer)[1] == struct.pack("<I", own)
+    for path in (b"logs/00000041.BIN", b"logs/00000000.BIN", b"logs/3.BIN", b"none"):
+        assert told(bench, OPEN, path) == NOT_FOUND
 
 
 def test_missions_are_read_as_files(bench: Bench) -> None:

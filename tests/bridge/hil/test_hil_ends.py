@@ -15,6 +15,7 @@ from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
 from sitl.bridge.hil.controls import (
+    ALIKE,
     LATE,
     LONGEST_WAIT_S,
     SHORTEST_WAIT_S,
@@ -286,6 +287,23 @@ def test_px4_without_a_rhythm_is_not_waited_for_long() -> None:
         bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
         assert bench.there.wait_s > 0.0
     assert bench.there.wait_s == SHORTEST_WAIT_S
+
+
+@pytest.mark.parametrize("rhythm", [1, 2, 3, 4])
+def test_of_a_rhythm_the_ticks_that_are_answered_are_waited_for_though_one_is_missed(rhythm: int) -> None:
+    clock, now = ForeignClock(), 0
+    clock.sent(now)
+    for _ in range(ALIKE + 2):
+        assert clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+        for _ in range(rhythm - 1):
+            clock.gave_up()
+        now += 2500 * rhythm
+    assert clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+    waited = []
+    for _ in range(3 * rhythm):
+        waited.append(clock.wait_s > 0.0)
+        clock.gave_up()
+    assert waited == [k % rhythm == 0 for k in range(1, 3 * rhythm + 1)]
 
 
 @pytest.mark.parametrize("mode", [1, 129])

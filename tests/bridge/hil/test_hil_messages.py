@@ -83,6 +83,14 @@ def test_updated_flags_follow_the_counters() -> None:
     assert flags == [0x1BFF, 0x3F, 0x1FF, 0x1A3F]
 
 
+def test_who_has_just_come_is_told_that_all_samples_are_new() -> None:
+    source = Vehicle()
+    all_of_it = Measurements(source.fleet, source.index, source.v)
+    told = (all_of_it.tick(), all_of_it.everything(), all_of_it.tick())
+    flags = [sensor.SensorReader.read(Splitter().feed(frames)[-1].payload)[14] for frames in told]
+    assert flags == [0x3F, 0x1BFF, 0x3F]
+
+
 @given(
     st.integers(-900_000_000, 900_000_000),
     st.integers(-1_800_000_000, 1_800_000_000),
