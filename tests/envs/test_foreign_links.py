@@ -15,7 +15,9 @@ import pytest
 from sitl.envs.mavlink import foreign
 from sitl.envs.mavlink.foreign import Foreign
 from sitl.envs.mavlink.last_messages import StepTelemetry
-from sitl.errors import LinkLostError
+from sitl.envs.mavlink.preparation import BY_FORCE
+from sitl.envs.robots.foreign import ForeignVehicles
+from sitl.errors import LinkLostError, NotASimulatorError
 from sitl.foreign.process import AutopilotEndedError
 
 
@@ -241,6 +243,30 @@ def test_what_was_started_for_a_link_that_cannot_be_opened_is_closed(monkeypatch
     with pytest.raises(LinkLostError, match="refused"):
         Foreign("host", "plant", "tcp:1", None, StepTelemetry(8), 5.0)  # type: ignore[arg-type]
     assert closed == ["host"]
+
+
+@pytest.mark.parametrize("program", [None, "arducopter"])
+@pytest.mark.parametrize("reset", ["auto", BY_FORCE])
+@pytest.mark.parametrize("is_simulator", [True, False])
+def test_one_that_was_found_where_it_runs_is_to_prove_that_it_is_a_simulator(
+    program: Any, reset: str, is_simulator: bool
+) -> None:
+    """One that was started here is; and the user may say so."""
+    vehicles: Any = object.__new__(ForeignVehicles)
+    vehicles._choice, vehicles.options = SimpleNamespace(program=program), SimpleNamespace(reset=reset)
+    asked: list[bool] = []
+
+    def prove() -> bool:
+        asked.append(True)
+        return is_simulator
+
+    found: Any = SimpleNamespace(prove=prove, name="tcp:1", doubt="it has a serial number", inbox=StepTelemetry(0))
+    if program is None and reset != BY_FORCE and not is_simulator:
+        with pytest.raises(NotASimulatorError, match=r"tcp:1.*it has a serial number"):
+            vehicles._check(found)
+    else:
+        vehicles._check(found)
+    assert bool(asked) == (program is None and reset != BY_FORCE), "else it is not disturbed"
 
 
 @pytest.mark.parametrize(
