@@ -160,6 +160,26 @@ def test_a_mission_is_kept_flown_and_cleared(copter: FirmwareBench) -> None:
     assert ack.type == 0 and len(copter.vehicle.mission) == 0
 
 
+def test_item_0_is_home_once_there_is_one(copter: FirmwareBench) -> None:
+    autopilot: Any = copter.autopilot
+    assert autopilot.mission_items() == ()
+    autopilot.home_changed()
+    assert autopilot.mission_items() == (), "nothing is known of home"
+    assert autopilot.replace_mission(SQUARE) == 0
+    assert autopilot.mission_items() == SQUARE
+    copter.vehicle.locate()
+    copter.vehicle.v.autopilot.home.lat += 1000
+    home, *others = autopilot.mission_items()
+    assert (home.command, home.x, home.y, home.z) == (16, HOME[0] + 1000, HOME[1], HOME[2])
+    assert tuple(others) == SQUARE[1:]
+    autopilot.home_changed()
+    assert len(autopilot.mission_items()) == 3
+    assert autopilot.clear_mission() and autopilot.mission_items() == ()
+    autopilot.home_changed()
+    (alone,) = autopilot.mission_items()
+    assert (alone.command, alone.x, alone.z) == (16, HOME[0] + 1000, HOME[2]), "a mission without other items has it"
+
+
 def test_arming_a_rover_too_early_is_refused_with_reasons(rover: FirmwareBench) -> None:
     found = texts(rover, long(400, 1))
     assert found and all(t.startswith("Arm: ") for t in found) and len(set(found)) == len(found)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import LOW
-from tests.bridge.fakes import HOME, Bench
+from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 from tests.bridge.test_commands import command_int
 
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
@@ -39,6 +39,28 @@ def test_a_parameter_that_a_command_needs_must_be_a_number(bench: Bench, number:
     assert bench.command(number, *params, *[INF] * (7 - len(params))) == DENIED
     assert bench.command(number, -INF) == DENIED
     assert not bench.autopilot.calls and not bench.vehicle.reboots
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "params", "needed"),
+    [
+        (FakeVehicle, 22, (0, 0, 0, 0, 0, 0, 10), {7}), (FakeVehicle, 84, (0, 0, 0, 0, 0, 0, 10), {7}),
+        (FakeVehicle, 115, (90, 0, 0, 0), {1}), (FakeVehicle, 178, (1, 3), {1, 2}), (FakeVehicle, 185, (1,), {1}),
+        (FakeVehicle, 193, (0,), {1}), (FakeVehicle, 195, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}),
+        (FakeVehicle, 201, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}), (FakeVehicle, 208, (1,), {1}),
+        (FakeVehicle, 209, (1, 0, 10, 2), {1, 2, 3, 4}), (FakeVehicle, 20, (), set()), (FakeVehicle, 21, (), set()),
+        (FakeRover, 178, (1, 3), {1, 2}), (FakeRover, 194, (1,), {1}), (FakeRover, 209, (1, 0, 10, 2), {1, 2, 3, 4}),
+        (FakeRover, 218, (9, 2), {1, 2}),
+    ],
+)  # fmt: skip
+def test_what_commands_of_a_firmware_need(kind: type[FakeVehicle], number: int, params: Any, needed: set[int]) -> None:
+    """NaN, "not given", is DENIED in these and in no other."""
+    given = [*params, *[0] * (7 - len(params))]
+    for k in range(1, 8):
+        bench = Bench(kind())
+        bench.vehicle.locate()
+        result = bench.command(number, *given[: k - 1], NAN, *given[k:])
+        assert (result == DENIED) == (k in needed), k
 
 
 @pytest.mark.parametrize(("number", "params"), [(400, (1,)), (176, (1, 4)), (300, ()), (410, ()), (520, (1,))])

@@ -96,6 +96,16 @@ def test_a_channel_that_a_client_overrides_is_transmitted(client: Client, overri
     assert (f"never acted: {why}" in text) if why else ("acted from" in text)
 
 
+def test_a_fault_that_begins_later_is_carried_out_after_a_reboot(client: Client) -> None:
+    at = client.now + 8.0
+    client.simulation.fail(f"gps/off@{at}")
+    client.simulation.bridge.vehicle.request_reboot()
+    client.delay(2.0)
+    assert client.params["SIM_GPS1_ENABLE"] == 1.0
+    client.delay(7.0)
+    assert client.params["SIM_GPS1_ENABLE"] == 0.0
+
+
 def test_who_begins_to_transmit_is_heard_within_a_tenth_of_a_second(client: Client) -> None:
     client.simulation.v.autopilot.rc.channels[:8] = 1500
     client.simulation.fail("rc:10/stuck")

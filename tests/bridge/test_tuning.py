@@ -38,6 +38,28 @@ def test_a_knob_sets_a_parameter_between_its_ends(pulse: int, turned: int, value
     assert calls(b, "parameter_changed") == [("LOIT_SPEED",)]
 
 
+ARDUPILOTS = {
+    1: "ATC_ANG_RLL_P ATC_ANG_PIT_P", 3: "ATC_ANG_YAW_P", 4: "ATC_RAT_RLL_P ATC_RAT_PIT_P",
+    5: "ATC_RAT_RLL_I ATC_RAT_PIT_I", 6: "ATC_RAT_YAW_P", 7: "PSC_VELZ_P", 12: "PSC_POSXY_P", 14: "PSC_POSZ_P",
+    21: "ATC_RAT_RLL_D ATC_RAT_PIT_D", 22: "PSC_VELXY_P", 25: "ACRO_RP_RATE", 26: "ATC_RAT_YAW_D", 28: "PSC_VELXY_I",
+    34: "PSC_ACCZ_P", 35: "PSC_ACCZ_I", 36: "PSC_ACCZ_D", 39: "CIRCLE_RATE", 40: "ACRO_Y_RATE", 45: "ATC_INPUT_TC",
+    46: "ATC_RAT_PIT_P", 47: "ATC_RAT_PIT_I", 48: "ATC_RAT_PIT_D", 49: "ATC_RAT_RLL_P", 50: "ATC_RAT_RLL_I",
+    51: "ATC_RAT_RLL_D", 55: "MOT_YAW_HEADROOM", 56: "ATC_RAT_YAW_FLTE", 58: "SID_MAGNITUDE", 59: "PSC_ANGLE_MAX",
+    60: "LOIT_SPEED",
+}  # fmt: skip
+"""Values of TUNE on ArduPilot's page about it, and what they tune."""
+
+
+@pytest.mark.parametrize("tune", range(-1, 62))
+def test_numbers_of_what_is_tuned_are_ardupilots(tune: int) -> None:
+    names = [name for names in ARDUPILOTS.values() for name in names.split()]
+    b = bench(**KNOB, TUNE=float(tune))
+    before = {name: b.vehicle.parameters[name] for name in names}
+    turn(b, 6, 1234)
+    changed = {name for name in names if b.vehicle.parameters[name] != before[name]}
+    assert changed == {*ARDUPILOTS.get(tune, "").split()}
+
+
 def test_two_knobs_do_not_mind_each_other() -> None:
     b = bench(**KNOB, TUNE=60.0, RC7_OPTION=220.0, TUNE2=4.0, TUNE2_MIN=0.1, TUNE2_MAX=0.3)
     turn(b, 6, 1300)

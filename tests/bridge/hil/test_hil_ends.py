@@ -306,6 +306,31 @@ def test_of_a_rhythm_the_ticks_that_are_answered_are_waited_for_though_one_is_mi
     assert waited == [k % rhythm == 0 for k in range(1, 3 * rhythm + 1)]
 
 
+@pytest.mark.parametrize("count", [1, 7, TRUSTED])
+def test_ticks_that_were_answered_elsewhere_count_as_if_they_were_answered_here(count: int) -> None:
+    here, there = ForeignClock(), ForeignClock()
+    for clock in (here, there):
+        clock.sent(10_000)
+        assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, 1), 10_000)
+        clock.gave_up()
+        assert clock.asks_for_step(Controls(5000, 1, (0.0,) * 16, 1), 15_000)
+        for k in range(ALIKE + 2):
+            assert clock.asks_for_step(Controls(7500 + 2500 * k, 1, (0.0,) * 16, 1), 17_500 + 2500 * k)
+        clock.gave_up()
+        assert clock.asks_for_step(Controls(27_500, 1, (0.0,) * 16, 1), 37_500)
+        assert clock.began_us == 10_000
+    for clock in (here, there):
+        for k in range(ALIKE + 1):
+            assert clock.asks_for_step(Controls(30_000 + 2500 * k, 1, (0.0,) * 16, 1), 40_000 + 2500 * k)
+    first = 30_000 + 2500 * (ALIKE + 1)
+    for k in range(count):
+        assert here.asks_for_step(Controls(first + 2500 * k, 1, (0.0,) * 16, 129), 10_000 + first + 2500 * k)
+    there.was_answered(count, 10_000 + first + 2500 * count, True)
+    waits = ("_longest_s",) if count == TRUSTED else ()  # it trusts again when it answers here
+    found, wanted = vars(there), vars(here)
+    assert {k: v for k, v in found.items() if k not in waits} == {k: v for k, v in wanted.items() if k not in waits}
+
+
 @pytest.mark.parametrize("mode", [1, 129])
 def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int) -> None:
     clock = ForeignClock(rests=True)

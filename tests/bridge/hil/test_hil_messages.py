@@ -83,6 +83,65 @@ def test_updated_flags_follow_the_counters() -> None:
     assert flags == [0x1BFF, 0x3F, 0x1FF, 0x1A3F]
 
 
+LIMITS = {
+    "xacc": 5000.0, "yacc": 5000.0, "zacc": 5000.0, "xgyro": 500.0, "ygyro": 500.0, "zgyro": 500.0, "xmag": 100.0,
+    "ymag": 100.0, "zmag": 100.0, "abs_pressure": 2000.0, "diff_pressure": 2000.0, "pressure_alt": 100_000.0,
+    "temperature": 300.0,
+}  # fmt: skip
+"""Of HIL_SENSOR, in its units: no sensor shows so much."""
+
+
+@pytest.mark.parametrize(("field", "limit"), LIMITS.items())
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_no_sensor_shows_is_refused_by_its_name(field: str, limit: float, sign: float) -> None:
+    below = float(np.nextafter(np.float32(limit), np.float32(0.0)))
+    sensor.SensorReader.read(sensor.SENSOR_KIND.payload(**{field: sign * below}))
+    for value in (sign * limit, sign * math.inf, math.nan):
+        with pytest.raises(RefusedError, match=rf"HIL_SENSOR\.{field} = .*less than {limit:g} in size"):
+            sensor.SensorReader.read(sensor.SENSOR_KIND.payload(**{field: value}))
+
+
+@pytest.mark.parametrize("k", [0, 7, 15])
+def test_controls_are_less_than_ten_in_size(k: int) -> None:
+    for sign in (1.0, -1.0):
+        values = [0.0] * 16
+        values[k] = sign * float(np.nextafter(np.float32(10.0), np.float32(0.0)))
+        assert controls.read_controls(controls.KIND.payload(controls=values)).outputs[k] == values[k]
+        for value in (sign * 10.0, sign * math.inf, math.nan):
+            values[k] = value
+            with pytest.raises(RefusedError, match=rf"controls\[{k}\] = "):
+                controls.read_controls(controls.KIND.payload(controls=values))
+
+
+@pytest.mark.parametrize("kind", ["sensor", "controls", "gps"])
+def test_a_clock_does_not_go_to_the_end_of_its_numbers(kind: str) -> None:
+    title, read = {
+        "sensor": (sensor.SENSOR_KIND, sensor.SensorReader.read),
+        "controls": (controls.KIND, controls.read_controls),
+        "gps": (measurements.GPS_KIND, measurements.GpsReader.read),
+    }[kind]
+    read(title.payload(time_usec=(1 << 62) - 1))
+    with pytest.raises(RefusedError, match=f"time_usec.* {1 << 62}"):
+        read(title.payload(time_usec=1 << 62))
+
+
+@pytest.mark.parametrize(
+    ("fields", "taken"),
+    [
+        ({"lat": 900_000_000, "lon": 1_800_000_000}, True), ({"lat": -900_000_000, "lon": -1_800_000_000}, True),
+        ({"lat": 900_000_001}, False), ({"lat": -900_000_001}, False), ({"lon": 1_800_000_001}, False),
+        ({"lon": -1_800_000_001}, False), ({"fix_type": 8}, True), ({"fix_type": 9}, False),
+    ],
+)  # fmt: skip
+def test_a_fix_is_on_the_globe_and_of_a_known_type(fields: Any, taken: bool) -> None:
+    payload = measurements.GPS_KIND.payload(**fields)
+    if taken:
+        assert measurements.GpsReader.read(payload)
+    else:
+        with pytest.raises(RefusedError, match="HIL_GPS"):
+            measurements.GpsReader.read(payload)
+
+
 def test_who_has_just_come_is_told_that_all_samples_are_new() -> None:
     source = Vehicle()
     all_of_it = Measurements(source.fleet, source.index, source.v)
