@@ -8,7 +8,7 @@ import pytest
 from sitl.bridge.ardupilot_json.autopilot_end import AutopilotEnd
 from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, lines, ticks
 from sitl.bridge.ardupilot_json.servos import Servos, decode, encode
-from tests.foreign import json_lines
+from tests.bridge import json_lines
 
 HERE, THERE = ("127.0.0.1", 1111), ("127.0.0.1", 2222)
 
