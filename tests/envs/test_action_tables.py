@@ -166,6 +166,7 @@ def test_each_form_of_each_set_point_is_an_action(who: str, form: str) -> None:
             assert action.space.n == len(kind.discrete[setpoint.name])
         else:
             limits = (kind.agile if form == "agile" else {}).get(setpoint.name, kind.continuous[setpoint.name])
+            assert limits[2] == kind.continuous[setpoint.name][2], "agile or not, the same columns"
             assert action.space.high.tolist() == pytest.approx(limits[1]) and action.columns == list(limits[2])
 
 

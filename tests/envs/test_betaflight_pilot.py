@@ -46,21 +46,23 @@ def test_it_leans_to_where_it_is_to_be(goal: Any, yaw: float, roll: int, pitch: 
     assert found[:3] == pytest.approx((roll * lean, pitch * lean, 0.0), abs=1e-12)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize(("axis", "sign"), [(0, -1), (1, 1)])
 def test_far_away_it_flies_one_and_a_half_metres_a_second_and_leans_no_more_than_20_degrees(
-    axis: int, sign: int
+    axis: int, sign: int, way: float
 ) -> None:
     other = 1 - axis  # north by pitch, east by roll
-    goal = [0.0, 0.0, 0.0]
-    goal[axis] = 50.0
-    cruise = [0.0, 0.0, 0.0]
-    cruise[axis] = 1.5
-    assert rates(goal=goal, velocity=cruise)[:2] == (0.0, 0.0)
-    assert rates(goal=goal)[other] == pytest.approx(sign * 5.0 * 3.0 / GRAVITY)
-    cruise[axis] = -50.0
-    assert rates(goal=goal, velocity=cruise)[other] == pytest.approx(sign * 5.0 * 0.35)
-    cruise[axis] = 50.0
-    assert rates(goal=goal, velocity=cruise)[other] == pytest.approx(-sign * 5.0 * 0.35)
+
+    def found(speed: float) -> tuple[float, ...]:
+        """Rates at a speed towards a goal that is 50 m away."""
+        velocity, goal = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
+        velocity[axis], goal[axis] = way * speed, way * 50.0
+        return rates(goal=goal, velocity=velocity)
+
+    assert found(1.5)[:2] == (0.0, 0.0)
+    assert found(0.0)[other] == pytest.approx(way * sign * 5.0 * 3.0 / GRAVITY)
+    assert found(-50.0)[other] == pytest.approx(way * sign * 5.0 * 0.35)
+    assert found(50.0)[other] == pytest.approx(-way * sign * 5.0 * 0.35)
 
 
 def test_a_lean_that_is_reached_is_kept() -> None:
