@@ -368,7 +368,7 @@ def test_a_copter_knows_what_its_gripper_does(copter: FirmwareBench, there: bool
 
 def test_a_copters_motors_are_no_free_outputs(copter: FirmwareBench) -> None:
     copter.vehicle.locate()
-    copter.vehicle.parameters.update({f"SERVO{k + 1}_FUNCTION": 33.0 + k for k in range(4)})
+    copter.vehicle.parameters.update({"FRAME_CLASS": 1.0} | {f"SERVO{k + 1}_FUNCTION": 33.0 + k for k in range(4)})
     copter.autopilot.parameter_changed("FRAME_CLASS")
     taken = [number for number in range(-1, 40) if copter.autopilot.set_servo(number, 1500)]
     motors = [int(k) + 1 for k in copter.vehicle.v.autopilot.control.motors.output[:4]]

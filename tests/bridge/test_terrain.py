@@ -230,7 +230,7 @@ def test_what_the_simulator_does_not_know_is_asked_for_of_clients() -> None:
     service.use(height)
     found = bench.requests(20.0)
     assert found and all(m.lat + 300_000 > HOME[0] for m in found), "blocks are 2.8 km, and end north of home"
-    assert service.height(HOME[0] - 5000, HOME[1]) == 612.0 and service.height(HOME[0] + 30_000, HOME[1]) is None
+    assert service.height(HOME[0] - 60_000, HOME[1]) == 612.0 and service.height(HOME[0] + 30_000, HOME[1]) is None
     assert bench.terrain.pending > 0
     count = len(tries)
     bench.run(20.0)
