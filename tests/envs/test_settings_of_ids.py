@@ -2,7 +2,8 @@
 """What an id means stays: results that were published with it are compared with new ones. Other settings are for an id
 with another version.
 
-``data/settings_of_ids.json`` has them as they were published; tables of moves are the same for all tasks of a robot.
+``data/settings_of_ids.json`` has them as they were published; tables of moves are the same for all tasks of a robot, as
+are limits of actions where an id has none of its own.
 """
 
 from __future__ import annotations
@@ -17,9 +18,26 @@ import pytest
 
 from sitl.envs.ids import FIRST, NEW
 from sitl.envs.presets import COPTER_MOVES, COPTER_MOVES_AMONG, PRESETS, ROVER_MOVES
+from sitl.envs.robots.copter import ROBOT as COPTER
+from sitl.envs.robots.rover import ROBOT as ROVER
 
 PUBLISHED = json.loads((Path(__file__).parent / "data" / "settings_of_ids.json").read_text())
 TRACK = "_given_gates"
+ROBOTS: dict[str, Any] = {
+    "copter": COPTER, "copter, PX4": COPTER.with_px4, "copter, Betaflight": COPTER.with_betaflight, "rover": ROVER,
+}  # fmt: skip
+KEPT = (
+    "modes",
+    "guided",
+    "tick",
+    "crash_range",
+    "discrete",
+    "continuous",
+    "agile",
+    "takes_off",
+    "feels_wind",
+    "parameters",
+)
 MOVES = {"copter": COPTER_MOVES, "copter among solids": COPTER_MOVES_AMONG, "rover": ROVER_MOVES}
 
 
@@ -56,3 +74,10 @@ def test_each_task_is_among_them_and_has_its_time() -> None:
 def test_moves_stay(robot: str) -> None:
     assert plain(MOVES[robot]) == PUBLISHED["moves"][robot]
     assert list(MOVES[robot]) == list(PUBLISHED["moves"][robot]), "agents know them by their numbers"
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_modes_and_limits_of_a_robot_stay(robot: str) -> None:
+    """Where an id gives none of its own, they are what its actions mean."""
+    kind = ROBOTS[robot]
+    assert {name: plain(getattr(kind, name)) for name in KEPT} == PUBLISHED["robots"][robot]
