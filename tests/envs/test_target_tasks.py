@@ -70,6 +70,21 @@ def test_a_snapshot_goes_on_bit_for_bit(name):
     assert same(first, [env.step(env.action_space.sample()) for _ in range(8)])
 
 
+@pytest.mark.parametrize("name", NEW)
+def test_what_a_task_keeps_is_a_copy_and_comes_back_in_another_environment(name):
+    env, other = gym.make(name).unwrapped, gym.make(name).unwrapped
+    played(env, 6, 10)
+    kept = env.snapshot()
+    before = pickle.dumps(kept.task)
+    env.step(env.action_space.sample())
+    env.reset(seed=7)
+    assert pickle.dumps(kept.task) == before
+    other.reset(seed=99)
+    assert pickle.dumps(other.snapshot().task) != before
+    other.restore(kept)
+    assert pickle.dumps(other.snapshot().task) == before
+
+
 def test_parts_are_named_and_bounded():
     names = [name for name in PARTS if name not in ("goal_heading", "route")]  # which this task does not have
     env = gym.make("sitl/CopterWaypoint-v0", observation=names)
