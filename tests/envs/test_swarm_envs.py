@@ -220,6 +220,25 @@ def test_who_is_within_a_metre_is_there_and_gets_a_tenth() -> None:
     assert not task.is_over(now)
 
 
+def test_what_is_reported_is_where_they_are_and_how_fast() -> None:
+    """North, east, down of the world's origin, and each other's and the goal's from there."""
+    starts = [(30.0, -20.0, 0.0, 0.0), (-15.0, 25.0, 0.0, 90.0), (5.0, 40.0, 0.0, 200.0)]
+    env = SwarmEnv(Formation(3), starts=starts, estimator="truth", steps=20)
+    env.reset(seed=1)
+    found: dict[str, Any] = {}
+    for _ in range(15):
+        found = env.step({agent: np.array([0.5, -0.25, 0.1], np.float32) for agent in env.agents})[0]
+    true = env._true_positions()
+    speeds = np.array([tuple(vehicle.v.physics.body.vel) for vehicle in env.swarm.vehicles])
+    assert np.abs(env._reported[:, :3] - true).max() < 0.5 and np.abs(env._reported[:, 3:] - speeds).max() < 0.5
+    assert np.abs(speeds[:, :2]).min() > 0.5
+    for k, agent in enumerate(env.agents):
+        others = [env._reported[j] - env._reported[k] for j in range(3) if j != k]
+        own = np.concatenate((env._reported[k, 3:], env._goals[k] - env._reported[k, :3], *others))
+        assert found[agent] == pytest.approx(own, abs=1e-3)
+    env.close()
+
+
 def test_what_cannot_be_is_refused() -> None:
     for options, needed in (
         ({"task": "dance"}, "formation"),
