@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import LOW
+from sitl.bridge.services.mount import MountService
 from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 from tests.bridge.test_commands import command_int
 
@@ -263,3 +264,66 @@ def test_an_external_position_has_no_altitude(located: Bench, frame: int, z: flo
     """MAV_CMD_EXTERNAL_POSITION_ESTIMATE; the estimator has a receiver, and does not take it."""
     assert command_int(located, 43003, frame, *HERE, z) == result
     assert located.autopilot.calls == []
+
+
+class Mount:
+    """Keeps what it was asked for."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[Any, ...]] = []
+
+    def look_at(self, *location: float) -> None:
+        self.asked.append(location)
+
+    def look_ahead(self) -> None:
+        self.asked.append(())
+
+
+@pytest.mark.parametrize("number", [195, 201])
+@pytest.mark.parametrize(
+    ("frame", "location", "result", "asked"),
+    [
+        (0, (*HERE, 600.0), ACCEPTED, [(*HERE, 600.0)]), (5, (*HERE, 600.0), ACCEPTED, [(*HERE, 600.0)]),
+        (3, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),
+        (6, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),
+        (10, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),  # a plain, as nobody knows the ground
+        (0, (0, 0, 0.0), ACCEPTED, [()]), (0, (1, 0, 0.0), ACCEPTED, [(1, 0, 0.0)]),
+        (0, (0, 1, 0.0), ACCEPTED, [(0, 1, 0.0)]), (0, (0, 0, 1.0), ACCEPTED, [(0, 0, 1.0)]),
+        (0, (900_000_000, -1_800_000_000, 1.0), ACCEPTED, [(900_000_000, -1_800_000_000, 1.0)]),
+        (0, (900_000_001, 0, 1.0), FAILED, []), (0, (0, 1_800_000_001, 1.0), FAILED, []),
+        (1, (*HERE, 10.0), DENIED, []), (8, (*HERE, 10.0), DENIED, []),
+    ],
+)  # fmt: skip
+def test_a_rovers_gimbal_looks_at_a_location_or_ahead_again(
+    number: int, frame: int, location: Any, result: int, asked: Any
+) -> None:
+    bench = Bench(FakeRover())
+    bench.vehicle.locate()
+    mount: Any = Mount()
+    bench.bridge.services[MountService] = mount
+    assert command_int(bench, number, frame, *location) == result
+    assert mount.asked == asked
+
+
+def test_over_ground_of_unknown_height_it_looks_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench(FakeRover())
+    bench.vehicle.locate()
+    mount: Any = Mount()
+    bench.bridge.services[MountService] = mount
+    monkeypatch.setattr(bench.bridge.locations, "_ground", lambda lat, lon: None)
+    assert command_int(bench, 195, 10, *HERE, 10.0) == FAILED and mount.asked == []
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, 2.0])
+def test_a_reposition_without_a_speed_asks_for_none(located: Bench, speed: float) -> None:
+    located.vehicle.v.autopilot.modes.number = 4
+    assert command_int(located, 192, 3, *HERE, 10.0, speed, 1.0) == ACCEPTED
+    asked = [call[1:] for call in located.autopilot.calls if call[0] == "change_reposition_speed"]
+    assert asked == ([(speed,)] if speed > 0.0 else [])
+
+
+def test_a_reposition_at_a_speed_that_is_refused_fails_and_goes_nowhere(located: Bench) -> None:
+    located.vehicle.v.autopilot.modes.number = 4
+    located.autopilot.change_reposition_speed = lambda speed: False  # type: ignore[attr-defined]
+    assert command_int(located, 192, 3, *HERE, 10.0, 2.0, 1.0) == FAILED
+    assert not [call for call in located.autopilot.calls if call[0] == "guided_position"]
