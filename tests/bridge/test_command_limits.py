@@ -50,6 +50,7 @@ def test_a_parameter_that_a_command_needs_must_be_a_number(bench: Bench, number:
         (FakeVehicle, 193, (0,), {1}), (FakeVehicle, 195, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}),
         (FakeVehicle, 201, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}), (FakeVehicle, 208, (1,), {1}),
         (FakeVehicle, 209, (1, 0, 10, 2), {1, 2, 3, 4}), (FakeVehicle, 20, (), set()), (FakeVehicle, 21, (), set()),
+        (FakeVehicle, 179, (0, 0, 0, 0, -35, 149, 600), {5, 6, 7}),
         (FakeRover, 178, (1, 3), {1, 2}), (FakeRover, 194, (1,), {1}), (FakeRover, 209, (1, 0, 10, 2), {1, 2, 3, 4}),
         (FakeRover, 218, (9, 2), {1, 2}),
     ],
@@ -327,3 +328,7 @@ def test_a_reposition_at_a_speed_that_is_refused_fails_and_goes_nowhere(located:
     located.autopilot.change_reposition_speed = lambda speed: False  # type: ignore[attr-defined]
     assert command_int(located, 192, 3, *HERE, 10.0, 2.0, 1.0) == FAILED
     assert not [call for call in located.autopilot.calls if call[0] == "guided_position"]
+
+
+def test_a_reposition_needs_an_altitude(located: Bench) -> None:
+    assert command_int(located, 192, 3, *HERE, NAN, -1.0, 1.0) == DENIED and not located.autopilot.calls

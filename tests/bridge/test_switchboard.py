@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import socket
+from typing import Any
 
 import pytest
 
@@ -11,6 +12,7 @@ from sitl.bridge.channel import Channel
 from sitl.bridge.links import InProcessLink, LogLink, TcpServerLink
 from sitl.bridge.links.link import Link, Peer
 from sitl.bridge.switchboard import Switchboard
+from tests.bridge.fakes import Bench
 
 FREE = 0
 
@@ -169,3 +171,43 @@ def test_what_is_queued_is_sent_before_it_closes(made: Board) -> None:
     board.close()
     assert links[1].receive() == b"last" and board.links == [] and board.channels == []
     assert [c.name for c in made.went] == ["a", "b"]
+
+
+class Journal:
+    """Keeps the names of what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[Any, ...]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *arguments: self.told.append((name, *arguments))
+
+    def names(self) -> list[str]:
+        """Since the last call."""
+        found, self.told = [each[0] for each in self.told], []
+        return found
+
+
+def test_a_journal_is_told_who_comes_what_is_said_and_who_goes() -> None:
+    bench = Bench()
+    bench.run(0.5)
+    journal: Any = Journal()
+    bench.bridge.board.journal = journal
+    link = InProcessLink()
+    bench.bridge.board.add_link(link)
+    assert journal.told[0] == ("link_added", link) and "came" in journal.names()
+    bench.bridge.beat()
+    names = journal.names()
+    assert "beat" in names and "sent" in names and names.index("sent") < names.index("flushed")
+    grants = bench.bridge.push_clock()
+    assert journal.told == [("lockstep", True)] and bench.bridge.grants is grants
+    journal.names()
+    bench.bridge.free_clock()
+    assert journal.told == [("lockstep", False)] and bench.bridge.grants is None
+    journal.names()
+    bench.bridge.free_clock()
+    assert journal.told == [], "once"
+    bench.bridge.board.remove_link(link)
+    assert journal.told[0] == ("link_removed", link) and "left" in journal.names()
+    bench.bridge.board.close()
+    assert "close" in journal.names() and bench.bridge.board.journal is None

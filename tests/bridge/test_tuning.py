@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.copter.parameters import TABLE
-from sitl.bridge.services.tuning import TUNED
+from sitl.bridge.services.tuning import TUNED, TuningService
+from sitl.core.constants import NEVER
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 KNOB = {"RC6_OPTION": 219.0, "RC6_MIN": 1100.0, "RC6_MAX": 1300.0, "TUNE_MIN": 100.0, "TUNE_MAX": 500.0}
@@ -101,3 +102,14 @@ def test_a_knob_that_is_fitted_in_flight_and_a_rover_that_has_none() -> None:
 
 def test_what_knobs_tune_is_there() -> None:
     assert all(TABLE[name].has_effect for names in TUNED.values() for name in names)
+
+
+def test_knobs_are_read_on_whole_multiples_of_300_ms() -> None:
+    b = bench(**KNOB, TUNE=60.0)
+    service = b.bridge.get(TuningService)
+    assert service.due_us == 300_000
+    b.run(0.7)
+    assert service.due_us == 900_000
+    b.vehicle.parameters["TUNE"] = 0.0
+    b.bridge.parameter_changed("TUNE")
+    assert service.due_us == NEVER
