@@ -199,6 +199,22 @@ def test_a_body_is_behind_the_base_that_lies_ahead_of_it(yaw: float, at: Any) ->
     assert euler_of(q).yaw == pytest.approx(-yaw) or abs(yaw) == math.pi
 
 
+@pytest.mark.parametrize(
+    ("mount", "lidar", "ahead"),
+    [((0.1, 0.2, 0.3, 0.4), (0.1, -0.2, -0.3), 0.4), (None, (0.0, 0.0, 0.0), 0.0)],
+)
+def test_a_lidar_is_drawn_where_the_robot_has_it(mount: Any, lidar: Any, ahead: float) -> None:
+    """Forward, left, up of its base, and how far that lies ahead [m]; in the scene right and down."""
+    world = load_world("open")
+    robot: Any = SimpleNamespace(count=1, world=world, volume=SimpleNamespace(radius=0.2, bottom=0.0, top=0.3))
+    if mount is not None:
+        robot.camera_mount = mount
+    session: Any = SimpleNamespace(robot=robot, task=None)
+    found = EnvSource(session, "toy")
+    assert found._lidar.tolist() == pytest.approx(lidar) and found._ahead == ahead
+    assert (found.stage.title, found.stage.world, found.stage.company) == ("toy", world, ())
+
+
 def test_a_robots_world_is_drawn_alone_or_with_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Any] = []
     monkeypatch.setattr(source, "beside", lambda worlds, offsets: drawn.append(worlds) or "all")
