@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 
 from sitl.bridge.channel import Channel
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter
 from sitl.bridge.links import InProcessLink, LogLink, TcpServerLink
 from sitl.bridge.links.link import Link, Peer
 from sitl.bridge.switchboard import Switchboard
@@ -211,3 +213,28 @@ def test_a_journal_is_told_who_comes_what_is_said_and_who_goes() -> None:
     assert journal.told[0] == ("link_removed", link) and "left" in journal.names()
     bench.bridge.board.close()
     assert "close" in journal.names() and bench.bridge.board.journal is None
+
+
+def test_a_log_has_what_clients_are_answered_once() -> None:
+    bench = Bench()
+    kept: list[bytes] = []
+    writer: Any = Writer()
+    writer.frame = lambda time_us, raw: kept.append(raw)
+    bench.bridge.board.add_link(LogLink(writer, bench.vehicle))
+    log = next(channel for channel in bench.bridge.channels if channel.peer.is_log)
+    bench.run(3.0)
+    other = bench.connect(system=250)
+
+    def logged() -> int:
+        """Answers of commands since the last call."""
+        bench.bridge.flush()
+        found = sum(frame.kind.name == "COMMAND_ACK" for raw in kept for frame in Splitter().feed(raw))
+        kept.clear()
+        return found
+
+    logged()
+    assert bench.command(520, 1) == 0 and logged() == 1
+    assert not other.receive("COMMAND_ACK"), "another client has not"
+    kind = message("COMMAND_ACK")
+    log.send(kind, kind.payload(command=1))
+    assert logged() == 1, "what is for the log itself, too"

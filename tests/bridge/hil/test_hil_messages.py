@@ -113,12 +113,13 @@ def test_controls_are_less_than_ten_in_size(k: int) -> None:
                 controls.read_controls(controls.KIND.payload(controls=values))
 
 
-@pytest.mark.parametrize("kind", ["sensor", "controls", "gps"])
+@pytest.mark.parametrize("kind", ["sensor", "controls", "gps", "sticks"])
 def test_a_clock_does_not_go_to_the_end_of_its_numbers(kind: str) -> None:
     title, read = {
         "sensor": (sensor.SENSOR_KIND, sensor.SensorReader.read),
         "controls": (controls.KIND, controls.read_controls),
         "gps": (measurements.GPS_KIND, measurements.GpsReader.read),
+        "sticks": (rc_inputs.KIND, rc_inputs.SticksReader.read),
     }[kind]
     read(title.payload(time_usec=(1 << 62) - 1))
     with pytest.raises(RefusedError, match=f"time_usec.* {1 << 62}"):
@@ -319,6 +320,27 @@ def test_sticks() -> None:
         taker.read(rc_inputs.sticks_payload(5000, (1500, 3000)))
     kind, payload = rc_inputs.frame_for(True, 5000, (1500, 1100))
     assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100
+    fields = kind.decode(payload)
+    assert (fields.time_boot_ms, fields.chancount, fields.rssi) == (5, 2, 254), "milliseconds; 254 is the strongest"
+    assert (fields.chan1_raw, fields.chan3_raw) == (1500, 0)
+    assert rc_inputs.frame_for(False, 5000, (1500,)) == (rc_inputs.KIND, rc_inputs.sticks_payload(5000, (1500,)))
+
+
+@pytest.mark.parametrize(
+    ("pulse", "taken"), [(0, 0), (65535, 0), (800, 800), (2200, 2200), (799, None), (2201, None), (1, None)]
+)
+@pytest.mark.parametrize("channel", [1, 12])
+def test_pulses_are_those_that_receivers_give(channel: int, pulse: int, taken: int | None) -> None:
+    """0 and UINT16_MAX: the channel is not used."""
+    pulses = [1500] * 12
+    pulses[channel - 1] = pulse
+    payload = rc_inputs.sticks_payload(7500, (*pulses, 1234))  # of more channels those are left out that have no field
+    if taken is None:
+        with pytest.raises(RefusedError, match=f"chan{channel}_raw = {pulse}: 800 .. 2200 us"):
+            rc_inputs.SticksReader.read(payload)
+    else:
+        time_us, found = rc_inputs.SticksReader.read(payload)
+        assert (time_us, len(found), found[channel - 1]) == (7500, 12, taken)
 
 
 CUT: dict[str, tuple[Any, Any, dict[str, Any]]] = {
