@@ -238,3 +238,13 @@ def test_a_log_has_what_clients_are_answered_once() -> None:
     kind = message("COMMAND_ACK")
     log.send(kind, kind.payload(command=1))
     assert logged() == 1, "what is for the log itself, too"
+
+
+def test_who_takes_over_closes_what_it_would_have_waited_with(made: Board) -> None:
+    other = Board().board
+    own, taken = other._selector, made.board._selector
+    other.take_over(made.board)
+    assert own.get_map() is None, "closed: each reboot would cost a descriptor"
+    assert other._selector is taken and taken.get_map() is not None
+    other.close()
+    assert taken.get_map() is None
