@@ -305,6 +305,44 @@ def test_truth() -> None:
         truth.read_truth(truth.truth_payload(0, carried._replace(attitude=(1.0, math.nan, 0.0, 0.0))))
 
 
+def test_before_anything_is_known_the_truth_is_at_rest() -> None:
+    assert truth.read_truth(truth.truth_payload(0, truth.NOWHERE)) == (0, truth.NOWHERE)
+    assert truth.NOWHERE.attitude == (1.0, 0.0, 0.0, 0.0) and not any(truth.NOWHERE.rates + truth.NOWHERE.velocity)
+
+
+@pytest.mark.parametrize(("field", "limit"), [("rollspeed", 1e3), ("pitchspeed", 1e3), ("yawspeed", 1e3)])
+def test_rates_of_a_truth_are_less_than_1000_rad_s(field: str, limit: float) -> None:
+    below = float(np.nextafter(np.float32(limit), np.float32(0.0)))
+    for sign in (1.0, -1.0):
+        assert truth.read_truth(truth.TRUTH_KIND.payload(**{field: sign * below}))
+        with pytest.raises(RefusedError, match=f"{field} = "):
+            truth.read_truth(truth.TRUTH_KIND.payload(**{field: sign * limit}))
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_parts_of_an_attitude_are_hardly_above_1(k: int) -> None:
+    for part, taken in ((1.09, True), (-1.09, True), (1.11, False), (-1.11, False)):
+        attitude = [0.0] * 4
+        attitude[k] = part
+        payload = truth.TRUTH_KIND.payload(attitude_quaternion=attitude)
+        if taken:
+            assert truth.read_truth(payload)[1].attitude[k] == pytest.approx(part)
+        else:
+            with pytest.raises(RefusedError, match=f"attitude {'wxyz'[k]}"):
+                truth.read_truth(payload)
+
+
+def test_a_touch_is_slower_than_10_km_s_and_has_a_time() -> None:
+    taker = truth.HitReader(Vehicle().v)
+    for name, x in ((b"HITGROUND", 9999.0), (b"HITSOLID", -9999.0)):
+        assert taker.read(truth.HITS_KIND.payload(name=name, x=x, time_usec=7)) == (7, x, name.decode())
+        for bad in (1e4, -1e4, math.nan):
+            with pytest.raises(RefusedError, match=r"DEBUG_VECT\.x"):
+                taker.read(truth.HITS_KIND.payload(name=name, x=bad))
+    with pytest.raises(RefusedError, match="time_usec"):
+        taker.read(truth.HITS_KIND.payload(name=b"HITSOLID", time_usec=1 << 62))
+
+
 def test_pressure_altitude_of_the_standard_atmosphere() -> None:
     assert sensor.pressure_altitude(1013.25) == pytest.approx(0.0)
     assert sensor.pressure_altitude(954.61) == pytest.approx(500.0, abs=1.0)
