@@ -12,6 +12,7 @@ from typing import NamedTuple
 import pytest
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services import served_files
 from sitl.bridge.services.ftp import MOST_WRITTEN, FtpService
 from sitl.bridge.services.mission_protocol import MissionService
 from sitl.bridge.services.parameter_protocol import ParameterService
@@ -283,3 +284,22 @@ def test_a_file_is_no_longer_than_what_may_be_written(bench: Bench) -> None:
     assert told(bench, 6, b"a.bin") == 0
     assert told(bench, WRITE, b"x", offset=MOST_WRITTEN - 1) == 0
     assert told(bench, WRITE, b"x", offset=MOST_WRITTEN) == 1
+
+
+def test_a_file_without_points_takes_all_of_them_away(bench: Bench) -> None:
+    """A header alone is a whole file; less is none, and so is one that counts other points than it has."""
+    head = struct.Struct("<HHHHH")
+    service = bench.bridge.get(MissionService)
+    rally = head.pack(0x763D, 2, 0, 0, 0)
+    assert served_files.write(bench.bridge, "@MISSION/rally.dat", rally)
+    assert not served_files.write(bench.bridge, "@MISSION/rally.dat", rally[:-1])
+    for bad in (
+        (0x763C, 2, 0, 0, 0),
+        (0x763D, 1, 0, 0, 0),
+        (0x763D, 2, 1, 0, 0),
+        (0x763D, 2, 0, 1, 0),
+        (0x763D, 2, 0, 0, 1),
+    ):
+        assert not served_files.write(bench.bridge, "@MISSION/rally.dat", head.pack(*bad)), bad
+    assert not served_files.write(bench.bridge, "@MISSION/rally.dat", rally + bytes(38))
+    assert service.items(MavMissionType.RALLY) == ()
