@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -492,3 +493,10 @@ def test_a_rover_without_gps_in_its_filter_needs_a_position(rover: FirmwareBench
     assert autopilot._worded(texts) == texts
     rover.vehicle.parameters["AHRS_GPS_USE"] = 0.0
     assert autopilot._worded(texts) == [f"Arm: {TEXTS[NEED_POSITION]}", "Arm: other"]
+
+
+def test_some_parameters_count_at_the_moment_of_arming_alone(copter: FirmwareBench) -> None:
+    autopilot: Any = copter.autopilot
+    autopilot._found = [SimpleNamespace(text=text, when_arming=text == "then") for text in ("always", "then")]
+    assert autopilot._parameter_texts(False, "PreArm: ") == ["PreArm: always"]
+    assert autopilot._parameter_texts(True, "Arm: ") == ["Arm: always", "Arm: then"]

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import LOW
+from sitl.bridge.services import command_table
 from sitl.bridge.services.mount import MountService
 from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 from tests.bridge.test_commands import command_int
@@ -332,3 +333,18 @@ def test_a_reposition_at_a_speed_that_is_refused_fails_and_goes_nowhere(located:
 
 def test_a_reposition_needs_an_altitude(located: Bench) -> None:
     assert command_int(located, 192, 3, *HERE, NAN, -1.0, 1.0) == DENIED and not located.autopilot.calls
+
+
+@pytest.mark.parametrize(
+    ("params", "asked"),
+    [
+        ((0, 0), (False, 15)), ((0, 1), (False, 1)), ((0, 2), (False, 2)), ((0, 15), (False, 15)), ((1, 0), (True, 15)),
+    ],
+)  # fmt: skip
+def test_fences_are_switched_one_by_one_or_all(
+    located: Bench, params: Any, asked: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bits as of FENCE_TYPE; 0 means all."""
+    done: list[Any] = []
+    monkeypatch.setattr(command_table, "switch_by_user", lambda fence, on, which, *rest: done.append((on, which)))
+    assert located.command(207, *params) == ACCEPTED and done == [asked]

@@ -331,6 +331,28 @@ def test_ticks_that_were_answered_elsewhere_count_as_if_they_were_answered_here(
     assert {k: v for k, v in found.items() if k not in waits} == {k: v for k, v in wanted.items() if k not in waits}
 
 
+def test_after_an_answer_that_came_twice_as_many_alike_are_needed_as_before() -> None:
+    clock, now = ForeignClock(), 0
+    clock.sent(now)
+
+    def answered() -> bool:
+        return clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+
+    assert answered()
+    for _ in range(ALIKE + 2):
+        clock.gave_up()
+        now += 5000
+        assert answered()
+    assert clock.wait_s == 0.0 and not answered()
+    waited = []
+    for _ in range(ALIKE + 1):
+        waited.append(clock.wait_s > 0.0)
+        clock.gave_up()
+        now += 5000
+        assert answered()
+    assert waited == [True] * ALIKE + [False]
+
+
 @pytest.mark.parametrize("mode", [1, 129])
 def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int) -> None:
     clock = ForeignClock(rests=True)
