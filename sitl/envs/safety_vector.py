@@ -32,7 +32,7 @@ class SafetyVectorEnv(VectorWrapper):
         observations, rewards, terminated, truncated, infos = self.env.step(actions)
         costs = np.zeros(self.num_envs)
         with_costs = [found for found in (infos, infos.get("final_info")) if isinstance(found, dict) and TOTAL in found]
-        if not with_costs and (self.num_envs > 0 and infos):
+        if not with_costs and infos:
             raise missing(self.env)
         for found in with_costs:
             costs += np.where(found["_" + TOTAL], found[TOTAL], 0.0)

@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.autopilot.arming_checks import ARMED, DISARMED
+from sitl.autopilot.arming_checks import AHRS_TYPE, ARMED, DISARMED, NEED_POSITION, TEXTS
 from sitl.autopilot.events import emit
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.navigation.state import RTL as RTL_LEG
 from sitl.autopilot.navigation.state import RUNNING, STOPPED
 from sitl.autopilot.rover.modes import guided as guided_mode
 from sitl.autopilot.rover.modes.guided import GUIDED_REACHED, GUIDED_TIMEOUT
@@ -160,6 +162,26 @@ def test_a_mission_is_kept_flown_and_cleared(copter: FirmwareBench) -> None:
     assert ack.type == 0 and len(copter.vehicle.mission) == 0
 
 
+def test_item_0_is_home_once_there_is_one(copter: FirmwareBench) -> None:
+    autopilot: Any = copter.autopilot
+    assert autopilot.mission_items() == ()
+    autopilot.home_changed()
+    assert autopilot.mission_items() == (), "nothing is known of home"
+    assert autopilot.replace_mission(SQUARE) == 0
+    assert autopilot.mission_items() == SQUARE
+    copter.vehicle.locate()
+    copter.vehicle.v.autopilot.home.lat += 1000
+    home, *others = autopilot.mission_items()
+    assert (home.command, home.x, home.y, home.z) == (16, HOME[0] + 1000, HOME[1], HOME[2])
+    assert tuple(others) == SQUARE[1:]
+    autopilot.home_changed()
+    assert len(autopilot.mission_items()) == 3
+    assert autopilot.clear_mission() and autopilot.mission_items() == ()
+    autopilot.home_changed()
+    (alone,) = autopilot.mission_items()
+    assert (alone.command, alone.x, alone.z) == (16, HOME[0] + 1000, HOME[2]), "a mission without other items has it"
+
+
 def test_arming_a_rover_too_early_is_refused_with_reasons(rover: FirmwareBench) -> None:
     found = texts(rover, long(400, 1))
     assert found and all(t.startswith("Arm: ") for t in found) and len(set(found)) == len(found)
@@ -300,3 +322,181 @@ def test_mission_start_in_auto_starts_a_mission_that_is_there_and_has_stopped(
         assert nav.mission_state == RUNNING and nav.command_seq == 1
         before = nav.mission_events
         assert copter.command(300) == ACCEPTED and nav.mission_events == before and nav.command_seq == 1
+
+
+# ---------------------------------------------------------------- what services ask a copter's laws
+
+
+SPEEDS = ("speed_ne", "speed_up", "speed_down")
+"""Of a mission (DO_CHANGE_SPEED) [m/s]; 0: those of the parameters."""
+
+
+@pytest.mark.parametrize(
+    ("mode", "command", "name", "rtl_speed", "cleared"),
+    [
+        (3, 16, "WPNAV_SPEED", 0.0, {"speed_ne"}), (3, 16, "WPNAV_SPEED_UP", 0.0, {"speed_up"}),
+        (3, 16, "WPNAV_SPEED_DN", 0.0, {"speed_down"}), (3, 16, "WPNAV_ACCEL", 0.0, set()),
+        (3, 16, "WPNAV_SPEED", 500.0, {"speed_ne"}), (21, 0, "WPNAV_SPEED", 500.0, {"speed_ne"}),
+        (24, 0, "WPNAV_SPEED", 0.0, {"speed_ne"}),
+        (6, 0, "WPNAV_SPEED", 0.0, {"speed_ne"}), (6, 0, "WPNAV_SPEED", 500.0, set()),  # RTL_SPEED comes before it
+        (6, 0, "WPNAV_SPEED_UP", 500.0, {"speed_up"}), (3, 20, "WPNAV_SPEED", 500.0, set()),
+        (3, 20, "WPNAV_SPEED", 0.0, {"speed_ne"}), (3, 20, "WPNAV_SPEED_DN", 500.0, {"speed_down"}),
+        (4, 0, "WPNAV_SPEED", 0.0, set()), (5, 0, "WPNAV_SPEED_DN", 0.0, set()),
+    ],
+)  # fmt: skip
+def test_speeds_that_are_set_while_a_leg_is_flown_hold_from_there_on(
+    copter: FirmwareBench, mode: int, command: int, name: str, rtl_speed: float, cleared: set[str]
+) -> None:
+    """In AUTO, RTL, SMART_RTL and ZIGZAG; on the way home RTL_SPEED holds where there is one."""
+    copter.ready()
+    ap = copter.vehicle.v.autopilot
+    ap.modes.number, nav = mode, ap.modes.nav
+    nav.command_kind = RTL_LEG if command == 20 else RTL_LEG + 1
+    copter.vehicle.parameters["RTL_SPEED"] = rtl_speed
+    for field in SPEEDS:
+        setattr(nav, field, 3.0)
+    copter.autopilot.parameter_changed(name)
+    assert {field for field in SPEEDS if getattr(nav, field) == 0.0} == cleared
+
+
+@pytest.mark.parametrize(
+    ("there", "is_open", "known"), [(True, True, 2), (True, False, 1), (False, True, 0), (False, False, 0)]
+)
+def test_a_copter_knows_what_its_gripper_does(copter: FirmwareBench, there: bool, is_open: bool, known: int) -> None:
+    copter.autopilot.gripper_is(there, is_open)
+    assert int(copter.vehicle.v.autopilot.modes.payload_place.gripper) == known
+
+
+def test_a_copters_motors_are_no_free_outputs(copter: FirmwareBench) -> None:
+    copter.vehicle.locate()
+    copter.vehicle.parameters.update({"FRAME_CLASS": 1.0} | {f"SERVO{k + 1}_FUNCTION": 33.0 + k for k in range(4)})
+    copter.autopilot.parameter_changed("FRAME_CLASS")
+    taken = [number for number in range(-1, 40) if copter.autopilot.set_servo(number, 1500)]
+    motors = [int(k) + 1 for k in copter.vehicle.v.autopilot.control.motors.output[:4]]
+    assert sorted(motors) == [1, 2, 3, 4]
+    assert taken == list(range(5, len(copter.vehicle.v.actuators.pwm) + 1))
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "rates", "landed", "rate"),
+    [
+        (0.0, 0.0, (0.1, 0.2, 0.3), False, 0.3), (math.pi / 2, 0.0, (0.1, 0.2, 0.3), False, 0.2),
+        (-math.pi / 2, 0.0, (0.1, 0.2, 0.3), False, -0.2), (0.0, math.pi / 3, (0.1, 0.2, 0.3), False, 0.6),
+        (0.0, math.pi / 2, (0.0, 0.0, 0.001), False, 1.0), (0.0, 0.0, (0.1, 0.2, 0.3), True, 0.0),
+    ],
+)  # fmt: skip
+def test_the_rate_of_yaw_that_is_wanted_is_that_about_the_vertical(
+    copter: FirmwareBench, roll: float, pitch: float, rates: Any, landed: bool, rate: float
+) -> None:
+    ap = copter.vehicle.v.autopilot
+    ap.arming.landed, attitude = landed, ap.control.attitude
+    attitude.target_rate, attitude.target_euler = rates, (roll, pitch, 1.0)
+    assert copter.autopilot.yaw_rate_target() == pytest.approx(rate)
+
+
+def test_height_sink_rate_and_lean_of_a_copter(copter: FirmwareBench) -> None:
+    copter.ready()
+    ap, autopilot = copter.vehicle.v.autopilot, copter.autopilot
+    ap.home.pos, ap.estimate.pos, ap.estimate.vel = (0.0, 0.0, -3.0), (5.0, 6.0, -23.0), (1.0, 2.0, -4.0)
+    ap.control.attitude.thrust_error_angle = 0.5
+    assert (autopilot.height(), autopilot.sink_rate(), autopilot.lean_error()) == (20.0, -4.0, 0.5)
+    for mode, lean in ((1, 0.0), (14, 0.0), (0, 0.5), (5, 0.5)):  # ACRO and FLIP turn over on purpose
+        ap.modes.number = mode
+        assert autopilot.lean_error() == lean
+    for landed in (0, 1):
+        ap.arming.landed = landed
+        assert autopilot.is_landed() is bool(landed)
+
+
+@pytest.mark.parametrize("stops", [True, False])
+def test_after_a_parachute_it_is_not_armed_again(copter: FirmwareBench, stops: bool) -> None:
+    copter.ready()
+    arming = copter.vehicle.v.autopilot.arming
+    arming.landed = 0
+    copter.autopilot.release_parachute(stops)
+    assert bool(arming.parachute_released) and bool(arming.armed) is not stops
+
+
+def test_the_throttle_is_on_the_channel_that_rcmap_says(copter: FirmwareBench) -> None:
+    channels = copter.vehicle.v.autopilot.rc.channels
+    channels[:8] = [1001 + k for k in range(8)]
+    assert copter.autopilot.throttle_pulse() == 1003
+    copter.vehicle.parameters["RCMAP_THROTTLE"] = 5.0
+    assert copter.autopilot.throttle_pulse() == 1005
+
+
+@pytest.mark.parametrize("mode", range(28))
+def test_a_copters_speed_is_set_where_it_flies_to_positions(copter: FirmwareBench, mode: int) -> None:
+    """AUTO, GUIDED, GUIDED_NOGPS, RTL and SMART_RTL."""
+    copter.ready()
+    copter.vehicle.v.autopilot.modes.number = mode
+    copter.vehicle.v.autopilot.modes.nav.mission_state = RUNNING
+    for kind in (-1, 0, 1, 2, 3, 4):
+        assert copter.autopilot.change_speed(kind, 2.0) is (mode in (3, 4, 20, 6, 21) and 0 <= kind <= 3), kind
+
+
+@pytest.mark.parametrize(("frame_class", "motors"), [(1.0, 4), (2.0, 6), (3.0, 8)])
+def test_a_frame_of_another_number_of_motors_is_said(copter: FirmwareBench, frame_class: float, motors: int) -> None:
+    copter.vehicle.v.physics.airframe.rotor_count = 4
+    copter.autopilot.take_notes()
+    copter.vehicle.parameters["FRAME_CLASS"] = frame_class
+    copter.autopilot.parameter_changed("FRAME_CLASS")
+    said = [note.text for note in copter.autopilot.take_notes() if note.text.startswith("FRAME_CLASS")]
+    assert said == (
+        [] if motors == 4 else [f"FRAME_CLASS {frame_class:.0f} has {motors} motors, this vehicle 4 rotors"]
+    )
+    copter.vehicle.v.autopilot.arming.armed = 1
+    copter.vehicle.parameters["FRAME_CLASS"] = 1.0
+    copter.autopilot.parameter_changed("FRAME_CLASS")
+    assert int(copter.vehicle.v.autopilot.control.motors.count) == motors, "not in flight"
+
+
+def test_home_here_needs_a_position_and_stays(copter: FirmwareBench) -> None:
+    copter.ready()
+    ap = copter.vehicle.v.autopilot
+    ap.estimate.position_ok, ap.estimate.pos = 0, (10.0, 0.0, 0.0)
+    assert copter.autopilot.set_home_here() is False and not ap.home.locked and ap.home.lat == HOME[0]
+    ap.estimate.position_ok = 1
+    assert copter.autopilot.set_home_here() is True and bool(ap.home.locked) and ap.home.lat > HOME[0]
+
+
+@pytest.mark.parametrize("second", [False, True])
+def test_an_origin_is_that_of_each_filter_that_runs(copter: FirmwareBench, second: bool) -> None:
+    ap = copter.vehicle.v.autopilot
+    ap.second_lane.runs = second
+    assert copter.autopilot.set_origin(*HOME)
+    assert (ap.estimate.origin_lat, ap.estimate.origin_lon, ap.estimate.origin_alt) == HOME
+    assert bool(ap.estimate.origin_set) and bool(ap.second_lane.estimate.origin_set) is second
+    assert copter.autopilot.set_origin(HOME[0] + 1, *HOME[1:]) is False and ap.estimate.origin_lat == HOME[0], "once"
+
+
+def test_sticks_of_a_rover_are_steering_and_throttle(rover: FirmwareBench) -> None:
+    pilot = rover.vehicle.v.autopilot.modes.pilot
+    pilot.steering, pilot.throttle = 0.25, -0.5
+    autopilot: Any = rover.autopilot
+    assert [autopilot.stick(motor) for motor in (1, 2, 3, 4)] == [-0.5, 0.25, -0.5, -0.5]
+
+
+def test_a_rover_has_no_yaw_of_its_own_to_keep(rover: FirmwareBench) -> None:
+    rover.ready()
+    rover.vehicle.v.autopilot.modes.number = AUTO
+    before = bytes(rover.vehicle.v._bytes)
+    rover.autopilot.gripper_is(True, True)
+    rover.autopilot.set_roi((1.0, 2.0, 3.0))
+    assert rover.autopilot.yaw_rate_target() == 0.0 and bytes(rover.vehicle.v._bytes) == before
+
+
+def test_a_rover_without_gps_in_its_filter_needs_a_position(rover: FirmwareBench) -> None:
+    """There is none to fall back to then (AHRS_GPS_USE 0)."""
+    texts = [f"Arm: {TEXTS[AHRS_TYPE]}", "Arm: other"]
+    autopilot: Any = rover.autopilot
+    assert autopilot._worded(texts) == texts
+    rover.vehicle.parameters["AHRS_GPS_USE"] = 0.0
+    assert autopilot._worded(texts) == [f"Arm: {TEXTS[NEED_POSITION]}", "Arm: other"]
+
+
+def test_some_parameters_count_at_the_moment_of_arming_alone(copter: FirmwareBench) -> None:
+    autopilot: Any = copter.autopilot
+    autopilot._found = [SimpleNamespace(text=text, when_arming=text == "then") for text in ("always", "then")]
+    assert autopilot._parameter_texts(False, "PreArm: ") == ["PreArm: always"]
+    assert autopilot._parameter_texts(True, "Arm: ") == ["Arm: always", "Arm: then"]

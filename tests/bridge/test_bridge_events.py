@@ -1,13 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
 from sitl.autopilot import events
 from sitl.autopilot.arming_checks import ARMED, DISARMED
 from sitl.autopilot.estimation.estimator_events import EKF_ORIGIN_SET
 from sitl.autopilot.events import EVENT_RING
 from sitl.autopilot.hits import HIT_GROUND
+from sitl.autopilot.mission.item import MissionItem
+from sitl.autopilot.mission.notes import OutputItem
 from sitl.autopilot.modes import MODE_CHANGED
-from sitl.autopilot.notes import CurrentChanged, ItemReached, Text
+from sitl.autopilot.notes import ChecksFailed, CurrentChanged, ItemReached, ParametersFound, Switched, Text
 from sitl.bridge.services.statustext import StatusTextService
 from tests.bridge.fakes import Bench
 
@@ -83,3 +90,37 @@ def test_long_texts_come_in_pieces(bench: Bench) -> None:
         assert len(pieces[-1].text) < 50 or length == 50
         (first,) = old.receive("STATUSTEXT")
         assert first.text == "x" * min(length, 50)
+
+
+def test_each_note_is_passed_on_to_whom_it_is_for(bench: Bench) -> None:
+    bench.run(3.0)
+    bench.client.receive()
+    item = MissionItem(181, p1=1.0, p2=1.0)
+    done: list[Any] = []
+    bench.bridge.carry_out = done.append  # type: ignore[method-assign]
+    bench.bridge.switched = lambda *what: done.append(what)  # type: ignore[method-assign]
+    bench.bridge.keep_parameters = done.append  # type: ignore[method-assign]
+    bench.bridge.autopilot.refusal_texts = lambda failed: [f"Arm: {failed}", "Arm: other"]  # type: ignore[method-assign]
+    bench.bridge.report([OutputItem(item), Switched(9, 2), ParametersFound(("A", "B")), ChecksFailed(5), Text(6, "x")])
+    assert done == [item, (9, 2), ("A", "B")]
+    said = [(m.severity, m.text) for m in bench.client.receive("STATUSTEXT")]
+    assert said == [(2, "Arm: 5"), (2, "Arm: other"), (6, "x")]
+
+
+@pytest.mark.parametrize("is_sent", [True, False])
+def test_an_item_that_only_logs_have_is_told_to_listeners_alone(bench: Bench, is_sent: bool) -> None:
+    reached: list[int] = []
+    bench.bridge.listeners = [SimpleNamespace(reached=reached.append)]  # type: ignore[assignment, list-item]
+    bench.client.receive()
+    bench.bridge.report([ItemReached(3, is_sent)])
+    assert [m.seq for m in bench.client.receive("MISSION_ITEM_REACHED")] == ([3] if is_sent else [])
+    assert reached == [3]
+
+
+def test_parameters_that_the_firmware_has_found_are_kept(bench: Bench) -> None:
+    bench.client.receive()
+    bench.vehicle.v.autopilot.params["MOT_THST_HOVER"] = 0.25
+    bench.bridge.keep_parameters(("MOT_THST_HOVER",))
+    assert bench.vehicle.parameters["MOT_THST_HOVER"] == 0.25
+    bench.run(0.1)
+    assert [(m.param_id, m.param_value) for m in bench.client.receive("PARAM_VALUE")] == [("MOT_THST_HOVER", 0.25)]

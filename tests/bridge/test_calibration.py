@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from sitl import Simulation
+from sitl.bridge.services.calibration import REPORT_US, CalibrationService
 from sitl.client import Client
 from sitl.client.errors import CommandRefusedError
 from sitl.core.algebra import yaw_of
+from tests.bridge.fakes import Bench
 
 IRON = {
     "SIM_MAG1_OFS_X": 100, "SIM_MAG1_OFS_Y": 200, "SIM_MAG1_OFS_Z": -150, "SIM_MAG1_DIA_X": 1.0, "SIM_MAG1_DIA_Y": 1.1,
@@ -200,3 +202,20 @@ def test_all_directions_have_a_section() -> None:
     assert SECTIONS.shape == (80, 3)
     apart = np.degrees(np.arccos(np.clip(SECTIONS @ SECTIONS.T - 2.0 * np.eye(80), -1.0, 1.0)))
     assert apart.min() > 15.0
+
+
+def test_a_position_is_asked_for_again_as_soon_as_it_is_due() -> None:
+    bench = Bench()
+    service = bench.bridge.get(CalibrationService)
+    bench.run(3.0)
+    bench.client.receive()
+    service.start_positions()
+    asked = []
+    for _ in range(4):
+        now, due = bench.bridge.now_us, service.due_us
+        service.service(max(due - 1, now) if asked else due)
+        service.service(due)
+        bench.bridge.flush()
+        asked.append([m.param1 for m in bench.client.receive("COMMAND_LONG")])
+        assert service.due_us == due + REPORT_US
+    assert asked == [[1.0]] * 4, "once each time"

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.aux_switch import LOW
-from tests.bridge.fakes import HOME, Bench
+from sitl.bridge.services import command_table
+from sitl.bridge.services.mount import MountService
+from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 from tests.bridge.test_commands import command_int
 
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
@@ -39,6 +41,29 @@ def test_a_parameter_that_a_command_needs_must_be_a_number(bench: Bench, number:
     assert bench.command(number, *params, *[INF] * (7 - len(params))) == DENIED
     assert bench.command(number, -INF) == DENIED
     assert not bench.autopilot.calls and not bench.vehicle.reboots
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "params", "needed"),
+    [
+        (FakeVehicle, 22, (0, 0, 0, 0, 0, 0, 10), {7}), (FakeVehicle, 84, (0, 0, 0, 0, 0, 0, 10), {7}),
+        (FakeVehicle, 115, (90, 0, 0, 0), {1}), (FakeVehicle, 178, (1, 3), {1, 2}), (FakeVehicle, 185, (1,), {1}),
+        (FakeVehicle, 193, (0,), {1}), (FakeVehicle, 195, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}),
+        (FakeVehicle, 201, (0, 0, 0, 0, -35, 149, 10), {5, 6, 7}), (FakeVehicle, 208, (1,), {1}),
+        (FakeVehicle, 209, (1, 0, 10, 2), {1, 2, 3, 4}), (FakeVehicle, 20, (), set()), (FakeVehicle, 21, (), set()),
+        (FakeVehicle, 179, (0, 0, 0, 0, -35, 149, 600), {5, 6, 7}),
+        (FakeRover, 178, (1, 3), {1, 2}), (FakeRover, 194, (1,), {1}), (FakeRover, 209, (1, 0, 10, 2), {1, 2, 3, 4}),
+        (FakeRover, 218, (9, 2), {1, 2}),
+    ],
+)  # fmt: skip
+def test_what_commands_of_a_firmware_need(kind: type[FakeVehicle], number: int, params: Any, needed: set[int]) -> None:
+    """NaN, "not given", is DENIED in these and in no other."""
+    given = [*params, *[0] * (7 - len(params))]
+    for k in range(1, 8):
+        bench = Bench(kind())
+        bench.vehicle.locate()
+        result = bench.command(number, *given[: k - 1], NAN, *given[k:])
+        assert (result == DENIED) == (k in needed), k
 
 
 @pytest.mark.parametrize(("number", "params"), [(400, (1,)), (176, (1, 4)), (300, ()), (410, ()), (520, (1,))])
@@ -241,3 +266,85 @@ def test_an_external_position_has_no_altitude(located: Bench, frame: int, z: flo
     """MAV_CMD_EXTERNAL_POSITION_ESTIMATE; the estimator has a receiver, and does not take it."""
     assert command_int(located, 43003, frame, *HERE, z) == result
     assert located.autopilot.calls == []
+
+
+class Mount:
+    """Keeps what it was asked for."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[Any, ...]] = []
+
+    def look_at(self, *location: float) -> None:
+        self.asked.append(location)
+
+    def look_ahead(self) -> None:
+        self.asked.append(())
+
+
+@pytest.mark.parametrize("number", [195, 201])
+@pytest.mark.parametrize(
+    ("frame", "location", "result", "asked"),
+    [
+        (0, (*HERE, 600.0), ACCEPTED, [(*HERE, 600.0)]), (5, (*HERE, 600.0), ACCEPTED, [(*HERE, 600.0)]),
+        (3, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),
+        (6, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),
+        (10, (*HERE, 10.0), ACCEPTED, [(*HERE, HOME[2] + 10.0)]),  # a plain, as nobody knows the ground
+        (0, (0, 0, 0.0), ACCEPTED, [()]), (0, (1, 0, 0.0), ACCEPTED, [(1, 0, 0.0)]),
+        (0, (0, 1, 0.0), ACCEPTED, [(0, 1, 0.0)]), (0, (0, 0, 1.0), ACCEPTED, [(0, 0, 1.0)]),
+        (0, (900_000_000, -1_800_000_000, 1.0), ACCEPTED, [(900_000_000, -1_800_000_000, 1.0)]),
+        (0, (900_000_001, 0, 1.0), FAILED, []), (0, (0, 1_800_000_001, 1.0), FAILED, []),
+        (1, (*HERE, 10.0), DENIED, []), (8, (*HERE, 10.0), DENIED, []),
+    ],
+)  # fmt: skip
+def test_a_rovers_gimbal_looks_at_a_location_or_ahead_again(
+    number: int, frame: int, location: Any, result: int, asked: Any
+) -> None:
+    bench = Bench(FakeRover())
+    bench.vehicle.locate()
+    mount: Any = Mount()
+    bench.bridge.services[MountService] = mount
+    assert command_int(bench, number, frame, *location) == result
+    assert mount.asked == asked
+
+
+def test_over_ground_of_unknown_height_it_looks_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = Bench(FakeRover())
+    bench.vehicle.locate()
+    mount: Any = Mount()
+    bench.bridge.services[MountService] = mount
+    monkeypatch.setattr(bench.bridge.locations, "_ground", lambda lat, lon: None)
+    assert command_int(bench, 195, 10, *HERE, 10.0) == FAILED and mount.asked == []
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, 2.0])
+def test_a_reposition_without_a_speed_asks_for_none(located: Bench, speed: float) -> None:
+    located.vehicle.v.autopilot.modes.number = 4
+    assert command_int(located, 192, 3, *HERE, 10.0, speed, 1.0) == ACCEPTED
+    asked = [call[1:] for call in located.autopilot.calls if call[0] == "change_reposition_speed"]
+    assert asked == ([(speed,)] if speed > 0.0 else [])
+
+
+def test_a_reposition_at_a_speed_that_is_refused_fails_and_goes_nowhere(located: Bench) -> None:
+    located.vehicle.v.autopilot.modes.number = 4
+    located.autopilot.change_reposition_speed = lambda speed: False  # type: ignore[attr-defined]
+    assert command_int(located, 192, 3, *HERE, 10.0, 2.0, 1.0) == FAILED
+    assert not [call for call in located.autopilot.calls if call[0] == "guided_position"]
+
+
+def test_a_reposition_needs_an_altitude(located: Bench) -> None:
+    assert command_int(located, 192, 3, *HERE, NAN, -1.0, 1.0) == DENIED and not located.autopilot.calls
+
+
+@pytest.mark.parametrize(
+    ("params", "asked"),
+    [
+        ((0, 0), (False, 15)), ((0, 1), (False, 1)), ((0, 2), (False, 2)), ((0, 15), (False, 15)), ((1, 0), (True, 15)),
+    ],
+)  # fmt: skip
+def test_fences_are_switched_one_by_one_or_all(
+    located: Bench, params: Any, asked: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bits as of FENCE_TYPE; 0 means all."""
+    done: list[Any] = []
+    monkeypatch.setattr(command_table, "switch_by_user", lambda fence, on, which, *rest: done.append((on, which)))
+    assert located.command(207, *params) == ACCEPTED and done == [asked]

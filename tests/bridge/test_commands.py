@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -273,6 +274,29 @@ def test_motor_test(rover_bench: Bench) -> None:
     for refused in ((1, 3, 20, 2), (5, 0, 20, 2), (1, 1, 1e9, 2), (1, 0, 101, 2)):
         assert rover_bench.command(209, *refused) == FAILED
     assert rover_bench.autopilot.calls == asked
+
+
+@pytest.mark.parametrize(
+    ("asked", "given"),
+    [
+        ((1, 0, 100), (1, 1.0, 0)),
+        ((1, 0, 100.5), None),
+        ((3, 0, -100), (3, -1.0, 0)),
+        ((3, 0, -150), (3, -1.0, 0)),
+        ((4, 0, 0), (4, 0.0, 0)),
+        ((0, 0, 20), (0, 0.2, 0)),
+        ((-1, 0, 20), None),
+        ((1, 1, 2200), (1, 0.0, 2200)),
+        ((1, 1, 2201), None),
+        ((1, 2, 0), (1, 1.0, 0)),  # its pilot holds the stick at the end
+        ((1, -1, 0), None),
+    ],
+)
+def test_ends_of_a_motor_test_of_a_rover(rover_bench: Bench, asked: Any, given: Any) -> None:
+    """Parts of full throttle are up to 100 % either way, pulses up to 2200 us, motors 0 .. 4."""
+    assert rover_bench.command(209, *asked, 2.0) == (FAILED if given is None else ACCEPTED)
+    told = [call[1:4] for call in rover_bench.autopilot.calls if call[0] == "test_motor"]
+    assert told == ([] if given is None else [given])
 
 
 def test_no_function_of_a_switch_is_one(bench: Bench, rover_bench: Bench) -> None:

@@ -12,7 +12,8 @@ from typing import NamedTuple
 import pytest
 
 from sitl.autopilot.mission.item import MissionItem
-from sitl.bridge.services.ftp import FtpService
+from sitl.bridge.services import served_files
+from sitl.bridge.services.ftp import MOST_WRITTEN, FtpService
 from sitl.bridge.services.mission_protocol import MissionService
 from sitl.bridge.services.parameter_protocol import ParameterService
 from sitl.core.mavlink import MavMissionType
@@ -153,6 +154,8 @@ def test_logs_are_listed_and_read(bench: Bench) -> None:
     (answer,) = bench.ask(request(CRC, b"logs/00000002.BIN"))
     own = zlib.crc32(contents[1], 0xFFFFFFFF) ^ 0xFFFFFFFF
     assert unpack(answer)[1] == struct.pack("<I", own)
+    for path in (b"logs/00000041.BIN", b"logs/00000000.BIN", b"logs/3.BIN", b"none"):
+        assert told(bench, OPEN, path) == NOT_FOUND
 
 
 def test_missions_are_read_as_files(bench: Bench) -> None:
@@ -260,3 +263,43 @@ def test_a_burst_of_a_log_that_is_erased_ends(bench: Bench) -> None:
     bench.run(0.2)
     answers = bench.client.receive("FILE_TRANSFER_PROTOCOL")
     assert [unpack(answer)[0][5] for answer in answers] == [1], "one packet, the last"
+
+
+def test_what_is_beyond_the_end_of_a_file_is_its_end(bench: Bench) -> None:
+    assert told(bench, 6, b"a.txt") == told(bench, WRITE, b"hello") == 0
+    for opcode in (READ, BURST):
+        assert told(bench, opcode, b"", offset=5, size=10) == END_OF_FILE
+    (answer,) = bench.ask(request(READ, offset=4, size=10, sequence=next(SEQUENCES)))
+    assert unpack(answer)[1][:1] == b"o"
+
+
+def test_a_file_that_is_read_is_not_written_and_none_is_summed_that_is_not_there(bench: Bench) -> None:
+    assert told(bench, OPEN, b"@SYS/tasks.txt") == 0 and told(bench, WRITE, b"x") == 1
+    assert told(bench, CRC, b"none") == NOT_FOUND and told(bench, CRC, b"@SYS/tasks.txt") == 0
+    for opcode in (ACK, NAK):
+        assert not bench.ask(request(opcode, b"", sequence=next(SEQUENCES))), "answers are not answered"
+
+
+def test_a_file_is_no_longer_than_what_may_be_written(bench: Bench) -> None:
+    assert told(bench, 6, b"a.bin") == 0
+    assert told(bench, WRITE, b"x", offset=MOST_WRITTEN - 1) == 0
+    assert told(bench, WRITE, b"x", offset=MOST_WRITTEN) == 1
+
+
+def test_a_file_without_points_takes_all_of_them_away(bench: Bench) -> None:
+    """A header alone is a whole file; less is none, and so is one that counts other points than it has."""
+    head = struct.Struct("<HHHHH")
+    service = bench.bridge.get(MissionService)
+    rally = head.pack(0x763D, 2, 0, 0, 0)
+    assert served_files.write(bench.bridge, "@MISSION/rally.dat", rally)
+    assert not served_files.write(bench.bridge, "@MISSION/rally.dat", rally[:-1])
+    for bad in (
+        (0x763C, 2, 0, 0, 0),
+        (0x763D, 1, 0, 0, 0),
+        (0x763D, 2, 1, 0, 0),
+        (0x763D, 2, 0, 1, 0),
+        (0x763D, 2, 0, 0, 1),
+    ):
+        assert not served_files.write(bench.bridge, "@MISSION/rally.dat", head.pack(*bad)), bad
+    assert not served_files.write(bench.bridge, "@MISSION/rally.dat", rally + bytes(38))
+    assert service.items(MavMissionType.RALLY) == ()

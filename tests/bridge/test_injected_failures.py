@@ -10,7 +10,9 @@ import pytest
 
 from sitl.bridge.services.failure_injection import FaultService
 from sitl.client import Client
+from sitl.errors import OptionError
 from sitl.simulation import Core, Simulation
+from sitl.vehicle.faults import Failure
 
 ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
 OK, OFF, STUCK, WRONG = 0, 1, 2, 4
@@ -96,6 +98,16 @@ def test_a_channel_that_a_client_overrides_is_transmitted(client: Client, overri
     assert (f"never acted: {why}" in text) if why else ("acted from" in text)
 
 
+def test_a_fault_that_begins_later_is_carried_out_after_a_reboot(client: Client) -> None:
+    at = client.now + 8.0
+    client.simulation.fail(f"gps/off@{at}")
+    client.simulation.bridge.vehicle.request_reboot()
+    client.delay(2.0)
+    assert client.params["SIM_GPS1_ENABLE"] == 1.0
+    client.delay(7.0)
+    assert client.params["SIM_GPS1_ENABLE"] == 0.0
+
+
 def test_who_begins_to_transmit_is_heard_within_a_tenth_of_a_second(client: Client) -> None:
     client.simulation.v.autopilot.rc.channels[:8] = 1500
     client.simulation.fail("rc:10/stuck")
@@ -107,3 +119,20 @@ def test_who_begins_to_transmit_is_heard_within_a_tenth_of_a_second(client: Clie
     history.finish(client.simulation.time_us)
     ((begin, _),) = history.faults[0].spans
     assert 0.0 <= begin * 1e-6 - begins <= 0.11
+
+
+def test_what_fails_is_told_to_who_wants_to_know(client: Client) -> None:
+    service = client.simulation.bridge.get(FaultService)
+    acted = service.fail(Failure.of_text("gps/off"))
+    assert acted is not None and "gps/off" in str(acted)
+    service.history = None
+    assert service.fail(Failure.of_text("battery=9")) is None, "nobody does"
+    assert service.texts[0].startswith("gps/off") and service.texts[1].startswith("battery/wrong=9")
+
+
+@pytest.mark.parametrize("fault", ["motor:5/off", "flow/off", "lidar:2/off"])
+def test_what_is_not_fitted_does_not_fail(client: Client, fault: str) -> None:
+    service = client.simulation.bridge.get(FaultService)
+    with pytest.raises(OptionError):
+        service.fail(Failure.of_text(fault))
+    assert service.texts == []

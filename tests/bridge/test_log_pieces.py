@@ -184,6 +184,11 @@ def test_the_end_of_a_download_and_of_all_logs(bench: Bench, logs: Store) -> Non
     ask(bench, 2, 0, ALL)
     bench.ask(mavlink.MAVLink_log_erase_message(1, 1))
     assert pieces(bench) == [] and logs.erased == 1
+    logs.sizes = [10, 50]  # a new one has the number of one that was erased
+    assert [(m.ofs, m.count) for m in ask(bench, 2, 50, ALL)] == [(50, 0)]
+    ask(bench, 2, 0, ALL)
+    assert pieces(bench) == [(2, 0, 50)]
+    logs.sizes = []
     assert listed(bench, 0, 65535) == [(0, 0, 0, 0, 0)]
     bench.bridge.logs = None
     bench.ask(mavlink.MAVLink_log_erase_message(1, 1))

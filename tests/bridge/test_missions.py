@@ -12,7 +12,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge import dialect
 from sitl.bridge.services.mission_protocol import MissionService
+from sitl.bridge.services.mission_upload import from_float
 from tests.bridge.fakes import HOME, Bench, Client
 
 ACCEPTED, ERROR, UNSUPPORTED_FRAME, UNSUPPORTED, NO_SPACE = range(5)
@@ -429,3 +431,20 @@ def test_lists_that_there_are_not_are_refused_in_every_message(bench: Bench, nam
     assert (ack.target_system, ack.target_component) == (255, 190)
     bench.run(10.0)
     assert bench.autopilot.items is old and bench.client.receive("MISSION_ACK", "MISSION_REQUEST") == []
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "result"),
+    [
+        (90.0, 180.0, 0), (-90.0, -180.0, 0), (90.00001, 0.0, 10), (-90.00001, 0.0, 10), (math.nan, 0.0, 10),
+        (math.inf, 0.0, 10), (0.0, 180.00002, 11), (0.0, -180.00002, 11), (0.0, math.nan, 11), (0.0, -math.inf, 11),
+    ],
+)  # fmt: skip
+def test_degrees_are_on_the_globe_up_to_the_poles(x: float, y: float, result: int) -> None:
+    """MAV_MISSION_INVALID_PARAM5_X and _PARAM6_Y."""
+    kind = dialect.message("MISSION_ITEM")
+    fields = kind.decode(kind.payload(command=16, frame=3, x=x, y=y, z=10.0))
+    item, found = from_float(fields, {16})
+    assert found == result
+    if result == 0:
+        assert (item.x, item.y) == (round(1e7 * x), round(1e7 * y))

@@ -10,6 +10,11 @@ import pytest
 
 from sitl.autopilot.aux_switch import HIGH, LOW, MIDDLE
 from sitl.autopilot.mission.item import MissionItem
+from sitl.bridge.services.camera import CameraService
+from sitl.bridge.services.gripper import GripperService
+from sitl.bridge.services.outputs import OutputService
+from sitl.bridge.services.parachute import ParachuteService
+from sitl.bridge.services.sprayer import SprayerService
 from sitl.core.mavlink import MavCmd
 from sitl.core.vectors import Vec3
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
@@ -265,3 +270,53 @@ def test_what_it_does_is_in_a_snapshot(params: dict[str, float], command: int, v
     b.run(3.0)
     assert (b.autopilot.calls, texts(b)) == (calls, said)
     assert calls or said
+
+
+# ---------------------------------------------------------------- switches
+
+
+class Acts:
+    """A service that keeps what it was asked for."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[Any, ...]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *arguments: self.asked.append((name, *arguments))
+
+
+@pytest.mark.parametrize(
+    ("function", "position", "service", "asked"),
+    [
+        (28, HIGH, OutputService, [("set_relay", 0, 1.0)]), (28, LOW, OutputService, [("set_relay", 0, 0.0)]),
+        (28, MIDDLE, OutputService, []), (34, HIGH, OutputService, [("set_relay", 1, 1.0)]),
+        (35, HIGH, OutputService, [("set_relay", 2, 1.0)]), (36, HIGH, OutputService, [("set_relay", 3, 1.0)]),
+        (66, HIGH, OutputService, [("set_relay", 4, 1.0)]), (67, LOW, OutputService, [("set_relay", 5, 0.0)]),
+        (21, HIGH, ParachuteService, [("switched", 21, HIGH)]), (22, LOW, ParachuteService, [("switched", 22, LOW)]),
+        (23, MIDDLE, ParachuteService, [("switched", 23, MIDDLE)]),
+        (19, HIGH, GripperService, [("grab",)]), (19, LOW, GripperService, [("release",)]),
+        (19, MIDDLE, GripperService, []), (15, HIGH, SprayerService, [("run", True, True)]),
+        (15, MIDDLE, SprayerService, [("run", False, True)]), (15, LOW, SprayerService, [("run", False, True)]),
+        (9, HIGH, CameraService, [("take_picture",)]), (9, MIDDLE, CameraService, []), (9, LOW, CameraService, []),
+    ],
+)  # fmt: skip
+def test_what_is_fitted_follows_its_switch(function: int, position: int, service: Any, asked: Any) -> None:
+    """Functions of ArduPilot's RCn_OPTION: 28, 34, 35, 36, 66, 67 relays 1 to 6, 21 to 23 parachute, 19 gripper,
+    15 sprayer, 9 camera."""
+    b, acts = bench(), Acts()
+    b.bridge.services[service] = acts  # type: ignore[assignment]
+    b.bridge.switched(function, position)
+    assert acts.asked == asked
+
+
+@pytest.mark.parametrize(
+    ("p1", "p2", "asked"),
+    [
+        (41, 0, [(41, LOW)]), (41, 1, [(41, MIDDLE)]), (41, 2, [(41, HIGH)]), (41, 3, []), (41, -1, []),
+        (300.0, 2.0, [(300, HIGH)]),
+    ],
+)  # fmt: skip
+def test_a_mission_moves_a_switch(p1: float, p2: float, asked: Any) -> None:
+    b = bench()
+    b.bridge.carry_out(MissionItem(MavCmd.DO_AUX_FUNCTION, p1=p1, p2=p2))
+    assert [call[1:] for call in b.autopilot.calls if call[0] == "run_aux_function"] == asked

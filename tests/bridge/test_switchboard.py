@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 import socket
+from typing import Any
 
 import pytest
 
 from sitl.bridge.channel import Channel
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter
 from sitl.bridge.links import InProcessLink, LogLink, TcpServerLink
 from sitl.bridge.links.link import Link, Peer
 from sitl.bridge.switchboard import Switchboard
+from tests.bridge.fakes import Bench
 
 FREE = 0
 
@@ -169,3 +173,78 @@ def test_what_is_queued_is_sent_before_it_closes(made: Board) -> None:
     board.close()
     assert links[1].receive() == b"last" and board.links == [] and board.channels == []
     assert [c.name for c in made.went] == ["a", "b"]
+
+
+class Journal:
+    """Keeps the names of what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[Any, ...]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *arguments: self.told.append((name, *arguments))
+
+    def names(self) -> list[str]:
+        """Since the last call."""
+        found, self.told = [each[0] for each in self.told], []
+        return found
+
+
+def test_a_journal_is_told_who_comes_what_is_said_and_who_goes() -> None:
+    bench = Bench()
+    bench.run(0.5)
+    journal: Any = Journal()
+    bench.bridge.board.journal = journal
+    link = InProcessLink()
+    bench.bridge.board.add_link(link)
+    assert journal.told[0] == ("link_added", link) and "came" in journal.names()
+    bench.bridge.beat()
+    names = journal.names()
+    assert "beat" in names and "sent" in names and names.index("sent") < names.index("flushed")
+    grants = bench.bridge.push_clock()
+    assert journal.told == [("lockstep", True)] and bench.bridge.grants is grants
+    journal.names()
+    bench.bridge.free_clock()
+    assert journal.told == [("lockstep", False)] and bench.bridge.grants is None
+    journal.names()
+    bench.bridge.free_clock()
+    assert journal.told == [], "once"
+    bench.bridge.board.remove_link(link)
+    assert journal.told[0] == ("link_removed", link) and "left" in journal.names()
+    bench.bridge.board.close()
+    assert "close" in journal.names() and bench.bridge.board.journal is None
+
+
+def test_a_log_has_what_clients_are_answered_once() -> None:
+    bench = Bench()
+    kept: list[bytes] = []
+    writer: Any = Writer()
+    writer.frame = lambda time_us, raw: kept.append(raw)
+    bench.bridge.board.add_link(LogLink(writer, bench.vehicle))
+    log = next(channel for channel in bench.bridge.channels if channel.peer.is_log)
+    bench.run(3.0)
+    other = bench.connect(system=250)
+
+    def logged() -> int:
+        """Answers of commands since the last call."""
+        bench.bridge.flush()
+        found = sum(frame.kind.name == "COMMAND_ACK" for raw in kept for frame in Splitter().feed(raw))
+        kept.clear()
+        return found
+
+    logged()
+    assert bench.command(520, 1) == 0 and logged() == 1
+    assert not other.receive("COMMAND_ACK"), "another client has not"
+    kind = message("COMMAND_ACK")
+    log.send(kind, kind.payload(command=1))
+    assert logged() == 1, "what is for the log itself, too"
+
+
+def test_who_takes_over_closes_what_it_would_have_waited_with(made: Board) -> None:
+    other = Board().board
+    own, taken = other._selector, made.board._selector
+    other.take_over(made.board)
+    assert own.get_map() is None, "closed: each reboot would cost a descriptor"
+    assert other._selector is taken and taken.get_map() is not None
+    other.close()
+    assert taken.get_map() is None

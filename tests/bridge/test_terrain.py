@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.mission.item import MissionItem, home_item
-from sitl.autopilot.terrain.grid import PARTS, around, block_of
+from sitl.autopilot.terrain.grid import PARTS, Block, around, block_of
 from sitl.bridge.dialect import message
-from sitl.bridge.services.terrain_protocol import TerrainService
+from sitl.bridge.services.terrain_protocol import BLOCKS_MAX, TerrainService
 from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import HOME, Bench, FakeRover, mavlink
 
@@ -194,3 +194,74 @@ def test_neither_home_nor_the_way_from_it_is_of_the_mission() -> None:
         MissionItem(MavCmd.NAV_WAYPOINT, x=HOME[0], y=HOME[1], z=10.0),
     )
     assert {(m.lat, m.lon) for m in bench.requests(24.0)} == set(around(HOME[0], HOME[1], 100.0))
+
+
+# ---------------------------------------------------------------- a source of the simulator's own
+
+
+def test_what_the_simulator_knows_is_not_asked_for() -> None:
+    bench = Ground()
+    service: TerrainService = bench.bridge.get(TerrainService)
+    asked: list[tuple[float, float]] = []
+
+    def height(lat: float, lon: float) -> float:
+        asked.append((lat, lon))
+        return 612.0 if lat < 1e-7 * HOME[0] + 0.5 else 700.0
+
+    service.use(height)
+    assert not bench.requests(6.0)
+    assert bench.terrain.loaded == 9 * PARTS and bench.terrain.pending == 0
+    assert bench.terrain.is_known and bench.terrain.home == 612.0 and service.height(*HOME[:2]) == 612.0
+    count = len(asked)
+    bench.run(10.0)
+    assert len(asked) == count, "what is known is not looked up again"
+    assert all(abs(lat - 1e-7 * HOME[0]) < 0.1 and abs(lon - 1e-7 * HOME[1]) < 0.1 for lat, lon in asked)
+
+
+def test_what_the_simulator_does_not_know_is_asked_for_of_clients() -> None:
+    bench = Ground()
+    service: TerrainService = bench.bridge.get(TerrainService)
+    tries: list[float] = []
+
+    def height(lat: float, lon: float) -> float | None:
+        tries.append(lat)
+        return 612.0 if lat <= 1e-7 * HOME[0] else None
+
+    service.use(height)
+    found = bench.requests(20.0)
+    assert found and all(m.lat + 300_000 > HOME[0] for m in found), "blocks are 2.8 km, and end north of home"
+    assert service.height(HOME[0] - 60_000, HOME[1]) == 612.0 and service.height(HOME[0] + 30_000, HOME[1]) is None
+    assert bench.terrain.pending > 0
+    count = len(tries)
+    bench.run(20.0)
+    assert len(tries) == count, "it knows no more later"
+
+
+def test_where_nobody_else_is_there_nothing_is_pending_but_what_was_not_tried() -> None:
+    bench = Bench()
+    bench.vehicle.locate()
+    terrain, service = bench.vehicle.v.autopilot.terrain, bench.bridge.get(TerrainService)
+    service.use(lambda lat, lon: None)
+    assert terrain.asked and terrain.pending == 9 * PARTS
+    bench.run(2.0)
+    assert terrain.asked and (terrain.pending, terrain.loaded) == (0, 0) and not terrain.is_known
+    bench.vehicle.parameters["TERRAIN_ENABLE"] = 0.0
+    service.look()
+    assert not terrain.asked and terrain.pending == 0
+
+
+def test_without_a_location_a_part_is_pending() -> None:
+    bench = Bench()
+    bench.bridge.get(TerrainService).use(lambda lat, lon: 1.0)
+    assert (bench.vehicle.v.autopilot.terrain.pending, bench.vehicle.v.autopilot.terrain.loaded) == (PARTS, 0)
+
+
+def test_the_oldest_blocks_are_forgotten() -> None:
+    bench = Ground()
+    service: TerrainService = bench.bridge.get(TerrainService)
+    whole = [(1,) * 16] * PARTS
+    for k in range(BLOCKS_MAX + 2):
+        service._keep(Block(k, 0), whole)
+    assert list(service._blocks) == [Block(k, 0) for k in range(2, BLOCKS_MAX + 2)]
+    service._keep(Block(2, 0), whole)
+    assert list(service._blocks)[-1] == Block(2, 0) and len(service._blocks) == BLOCKS_MAX, "what is told again is new"

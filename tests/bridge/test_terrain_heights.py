@@ -53,6 +53,22 @@ def test_rises_are_from_the_ground_at_home() -> None:
     assert service(bench).rise(*FAR) is None, "home's own ground is not known"
 
 
+@pytest.mark.parametrize(("most", "offset"), [(15.0, 15.0), (100.0, 64.0), (-15.0, 15.0), (0.0, 0.0)])
+def test_a_check_tells_the_ground_there_and_how_high_the_vehicle_is_above_the_ground_below(
+    most: float, offset: float
+) -> None:
+    """From arming on all ground is higher by what home is higher than the ground there, up to TERRAIN_OFS_MAX."""
+    bench = Ground()
+    learn(bench, height=520)
+    bench.vehicle.parameters["TERRAIN_OFS_MAX"] = most
+    service(bench).armed()
+    bench.vehicle.v.autopilot.estimate.pos = (0.0, 0.0, -30.0)
+    (answer,) = bench.ask(mavlink.MAVLink_terrain_check_message(*FAR), "TERRAIN_REPORT")
+    assert HOME[2] == 584.0
+    assert (answer.lat, answer.lon, answer.spacing, answer.terrain_height) == (*FAR, 100, 520.0 + offset)
+    assert (answer.current_height, answer.pending, answer.loaded) == (30.0, 0, 9 * PARTS)
+
+
 def test_switched_off_nothing_is_known() -> None:
     bench = Ground()
     learn(bench)

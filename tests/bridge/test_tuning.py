@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from sitl.autopilot.copter.parameters import TABLE
-from sitl.bridge.services.tuning import TUNED
+from sitl.bridge.services.tuning import TUNED, TuningService
+from sitl.core.constants import NEVER
 from tests.bridge.fakes import Bench, FakeRover, FakeVehicle
 
 KNOB = {"RC6_OPTION": 219.0, "RC6_MIN": 1100.0, "RC6_MAX": 1300.0, "TUNE_MIN": 100.0, "TUNE_MAX": 500.0}
@@ -36,6 +37,28 @@ def test_a_knob_sets_a_parameter_between_its_ends(pulse: int, turned: int, value
     turn(b, 6, pulse)
     assert b.vehicle.parameters["LOIT_SPEED"] == value
     assert calls(b, "parameter_changed") == [("LOIT_SPEED",)]
+
+
+ARDUPILOTS = {
+    1: "ATC_ANG_RLL_P ATC_ANG_PIT_P", 3: "ATC_ANG_YAW_P", 4: "ATC_RAT_RLL_P ATC_RAT_PIT_P",
+    5: "ATC_RAT_RLL_I ATC_RAT_PIT_I", 6: "ATC_RAT_YAW_P", 7: "PSC_VELZ_P", 12: "PSC_POSXY_P", 14: "PSC_POSZ_P",
+    21: "ATC_RAT_RLL_D ATC_RAT_PIT_D", 22: "PSC_VELXY_P", 25: "ACRO_RP_RATE", 26: "ATC_RAT_YAW_D", 28: "PSC_VELXY_I",
+    34: "PSC_ACCZ_P", 35: "PSC_ACCZ_I", 36: "PSC_ACCZ_D", 39: "CIRCLE_RATE", 40: "ACRO_Y_RATE", 45: "ATC_INPUT_TC",
+    46: "ATC_RAT_PIT_P", 47: "ATC_RAT_PIT_I", 48: "ATC_RAT_PIT_D", 49: "ATC_RAT_RLL_P", 50: "ATC_RAT_RLL_I",
+    51: "ATC_RAT_RLL_D", 55: "MOT_YAW_HEADROOM", 56: "ATC_RAT_YAW_FLTE", 58: "SID_MAGNITUDE", 59: "PSC_ANGLE_MAX",
+    60: "LOIT_SPEED",
+}  # fmt: skip
+"""Values of TUNE on ArduPilot's page about it, and what they tune."""
+
+
+@pytest.mark.parametrize("tune", range(-1, 62))
+def test_numbers_of_what_is_tuned_are_ardupilots(tune: int) -> None:
+    names = [name for names in ARDUPILOTS.values() for name in names.split()]
+    b = bench(**KNOB, TUNE=float(tune))
+    before = {name: b.vehicle.parameters[name] for name in names}
+    turn(b, 6, 1234)
+    changed = {name for name in names if b.vehicle.parameters[name] != before[name]}
+    assert changed == {*ARDUPILOTS.get(tune, "").split()}
 
 
 def test_two_knobs_do_not_mind_each_other() -> None:
@@ -79,3 +102,14 @@ def test_a_knob_that_is_fitted_in_flight_and_a_rover_that_has_none() -> None:
 
 def test_what_knobs_tune_is_there() -> None:
     assert all(TABLE[name].has_effect for names in TUNED.values() for name in names)
+
+
+def test_knobs_are_read_on_whole_multiples_of_300_ms() -> None:
+    b = bench(**KNOB, TUNE=60.0)
+    service = b.bridge.get(TuningService)
+    assert service.due_us == 300_000
+    b.run(0.7)
+    assert service.due_us == 900_000
+    b.vehicle.parameters["TUNE"] = 0.0
+    b.bridge.parameter_changed("TUNE")
+    assert service.due_us == NEVER

@@ -11,6 +11,7 @@ import pytest
 
 from sitl.envs import ids, presets
 from sitl.envs.actions import Normalised
+from sitl.envs.options import EnvOptionError
 from sitl.envs.presets import COPTER_MOVES, COPTER_MOVES_AMONG, PRESETS, ROVER_MOVES, options_of
 from sitl.envs.robots.copter import ROBOT as COPTER
 from sitl.envs.robots.rover import ROBOT as ROVER
@@ -148,6 +149,25 @@ def test_each_set_point_has_limits_for_its_columns(who: str, kind: Any) -> None:
         assert max(columns) < len(setpoint.columns) and setpoint.name in kind.modes
         if who != "rover":
             assert len(low) in (4, 8)
+
+
+@pytest.mark.parametrize("form", ["continuous", "agile", "discrete"])
+@pytest.mark.parametrize("who", [who for who, kind in KINDS.items() if kind is not None])
+def test_each_form_of_each_set_point_is_an_action(who: str, form: str) -> None:
+    kind: Any = KINDS[who]
+    for setpoint in kind.setpoints:
+        if form == "discrete" and setpoint.name not in kind.discrete:
+            with pytest.raises(EnvOptionError, match=f"no discrete actions for setpoint '{setpoint.name}'"):
+                kind.action(form, setpoint)
+            continue
+        action = kind.action(form, setpoint)
+        assert action.setpoint is setpoint
+        if form == "discrete":
+            assert action.space.n == len(kind.discrete[setpoint.name])
+        else:
+            limits = (kind.agile if form == "agile" else {}).get(setpoint.name, kind.continuous[setpoint.name])
+            assert limits[2] == kind.continuous[setpoint.name][2], "agile or not, the same columns"
+            assert action.space.high.tolist() == pytest.approx(limits[1]) and action.columns == list(limits[2])
 
 
 @pytest.mark.parametrize("name", ["velocity", "attitude", "acceleration", "thrust", "rates"])

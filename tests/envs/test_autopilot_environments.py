@@ -148,6 +148,9 @@ def test_snapshot_and_pickle_go_on_bit_for_bit(name):
     other = gym.make(name, observation="scan+pose")
     other.reset(seed=99)
     other.unwrapped.restore(kept)
+    again = other.unwrapped.snapshot()
+    assert pickle.dumps(again.robot.telemetry) == pickle.dumps(kept.robot.telemetry), "times of what was told, too"
+    assert (again.robot.origin, again.robot.began_us) == (kept.robot.origin, kept.robot.began_us)
     assert trace(other.unwrapped, actions) == first
 
 

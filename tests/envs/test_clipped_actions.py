@@ -11,6 +11,7 @@ import pytest
 from gymnasium.error import InvalidAction
 
 from sitl.envs import EnvOptionError
+from sitl.envs.actions import VELOCITY, Continuous, Discrete, Normalised
 
 OPTIONS = {"action": "continuous", "world": "maze"}
 ULP = float(np.nextafter(np.float32(0.3), np.float32(1.0)))
@@ -68,3 +69,22 @@ def test_what_is_not_finite_is_refused_in_any_case(number, clip_actions):
 def test_a_choice_that_is_none_is_refused():
     with pytest.raises(EnvOptionError, match="clip_actions = 1; it must be True or False"):
         make(clip_actions=1)
+
+
+def test_the_action_nearest_to_a_set_point():
+    """Columns of a table count by their range; in a box each number is as near as its limits let it be."""
+    table = Discrete(VELOCITY, {"stay": (0, 0, 0, 0), "ahead": (4, 0, 0, 0), "turn": (0, 0, 0, 1)})
+    for command, number in (((1.9, 0, 0, 0), 0), ((2.1, 0, 0, 0), 1), ((0, 0, 0, 0.6), 2), ((1.8, 9, 9, 0.4), 0)):
+        assert table.nearest(np.array(command)) == number, command
+    box = Continuous(VELOCITY, (-2.0, -1.0), (4.0, 1.0), (0, 3))
+    assert box.nearest(np.array([1.5, 9.0, 9.0, 0.5])).tolist() == [1.5, 0.5]
+    assert box.nearest(np.array([9.0, 9.0, 9.0, -9.0])).tolist() == [4.0, -1.0]
+    normalised = Normalised(box)
+    assert normalised.nearest(np.array([1.0, 9.0, 9.0, 0.5])).tolist() == [0.0, 0.5], "the middle is 0"
+    assert normalised.nearest(np.array([-9.0, 9.0, 9.0, 9.0])).tolist() == [-1.0, 1.0]
+    for command in ((-1.0, 0.0, 0.0, 0.25), (3.0, 0.0, 0.0, -1.0)):
+        for action in (box, normalised):
+            row, out = action.buffer(1), np.zeros((1, 4))
+            row[0] = action.nearest(np.array(command))
+            action.commands(row, out)
+            assert out[0].tolist() == pytest.approx(command)

@@ -15,8 +15,10 @@ from sitl.envs import EnvOptionError
 from sitl.envs.arena import Arena
 from sitl.envs.costs import COSTS, Costs, Energy, Fence, Proximity, Tilt
 from sitl.envs.rewards import Step
+from sitl.envs.robots import kind
 from sitl.envs.safety import SafetyEnv
 from sitl.envs.safety_vector import SafetyVectorEnv
+from sitl.vehicles import load
 from sitl.worlds import World
 from sitl.worlds.shapes import Box, Start
 from tests.envs.vector_equality import same
@@ -78,6 +80,21 @@ def test_below_the_arena_of_a_task_nobody_is_outside_but_below_a_box_that_was_gi
     task = type("Task", (), {"arena_at": lambda self, index: box})()
     assert costs_of(robot, "fence", task=task)["cost_fence"].tolist() == [0.0, 0.0, float(flies)]
     assert costs_of(robot, Fence(box))["cost_fence"].tolist() == [float(flies), 0.0, float(flies)]
+
+
+@pytest.mark.parametrize(
+    ("frame", "climbs", "outline"),
+    [
+        ("erle_copter", 3.0, (0.32, 0.0, 3.17)),  # one disc
+        ("erle_rover", 0.0, (0.506 + 0.9, 0.0, 0.85)),  # three discs, of which that at its front reaches farthest
+        ("ardupilot_rover", 0.5, (0.25, 0.0, 0.8)),
+    ],
+)
+def test_a_volume_has_all_discs_of_an_outline_and_what_it_climbs(frame, climbs, outline):
+    volume = kind.volume(load(frame), climbs)
+    assert (volume.radius, volume.bottom, volume.top) == pytest.approx(outline)
+    low = load(frame).changed(contact_bottom=0.2)
+    assert kind.volume(low, climbs).bottom == -0.2
 
 
 def test_proximity_is_the_distance_of_the_volume_to_the_nearest_solid():

@@ -15,7 +15,9 @@ import pytest
 from sitl.envs.mavlink import foreign
 from sitl.envs.mavlink.foreign import Foreign
 from sitl.envs.mavlink.last_messages import StepTelemetry
-from sitl.errors import LinkLostError
+from sitl.envs.mavlink.preparation import BY_FORCE
+from sitl.envs.robots.foreign import ForeignVehicles
+from sitl.errors import LinkLostError, NotASimulatorError, NotReadyError
 from sitl.foreign.process import AutopilotEndedError
 
 
@@ -208,6 +210,112 @@ def test_everything_is_closed_at_the_end() -> None:
     assert closed == ["host", "plant"]
 
 
+# ---------------------------------------------------------------- booted anew
+
+
+class Rebooting:
+    """A host whose autopilot has booted after so many looks; each takes a second."""
+
+    def __init__(self, clock: SimpleNamespace, looks: int) -> None:
+        self.boots, self.steps, self.plants = 1, 0, []  # type: ignore[var-annotated]
+        self._clock, self._left = clock, looks
+
+    def attach(self, plant: Any) -> None:
+        self.plants.append(plant)
+
+    def listen(self) -> bool:
+        self._clock.now += 1.0
+        self._left -= 1
+        self.boots += self._left == 0
+        return self._left % 2 == 0
+
+    def step(self) -> None:
+        self.steps += 1
+
+
+def rebooted(clock: SimpleNamespace, looks: int = 3, answers: Any = 0, hears: Any = lambda: None, **acks: Any) -> Any:
+    """A link to an autopilot that runs elsewhere, and what was done to it."""
+    done: list[Any] = []
+
+    def command(name: str, **fields: Any) -> int:
+        done.append((name, fields))
+        if name == "PREFLIGHT_REBOOT_SHUTDOWN" and isinstance(answers, Exception):
+            raise answers
+        return int(answers) if name == "PREFLIGHT_REBOOT_SHUTDOWN" else 0
+
+    plant = SimpleNamespace(close=lambda: done.append("closed"))
+    inbox = SimpleNamespace(acks=acks.get("acks", {}), forget=lambda: done.append("forgot"))
+    made = link(
+        host=Rebooting(clock, looks), plant=plant, inbox=inbox, command=command, _hear=hears, name="tcp:1",
+        _use=lambda new: done.append(("uses", new)), find=lambda: done.append("found"),
+        _connect=lambda: done.append("connected"),
+    )  # fmt: skip
+    made.done = done
+    return made
+
+
+REBOOT = [
+    ("COMPONENT_ARM_DISARM", {"arm": 0, "force": foreign.ARM_FORCED}), ("PREFLIGHT_REBOOT_SHUTDOWN", {"autopilot": 1}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("looks", [1, 3, 4])
+def test_an_autopilot_elsewhere_is_disarmed_rebooted_and_found_on_another_plant(
+    looks: int, clock: SimpleNamespace
+) -> None:
+    made = rebooted(clock, looks)
+    made.restart("other")
+    assert made.done == [*REBOOT, "closed", ("uses", "other"), "forgot", "found"]
+    assert made.host.plants == ["other"] and made.host.steps == (looks + 1) // 2
+    assert clock.now == 100.0 + looks
+
+
+def test_one_that_does_not_boot_is_lost_after_a_while(clock: SimpleNamespace) -> None:
+    made = rebooted(clock, 100)
+    with pytest.raises(LinkLostError, match=r"connection tcp:1: the autopilot does not boot within 5 s"):
+        made.restart("other")
+    assert clock.now == 105.0 and "found" not in made.done
+
+
+def test_one_that_refuses_to_reboot_keeps_its_plant(clock: SimpleNamespace) -> None:
+    made = rebooted(clock, answers=4)
+    with pytest.raises(NotReadyError, match=r"tcp:1: the autopilot refuses to reboot \(MAV_RESULT 4\)"):
+        made.restart("other")
+    assert made.done == REBOOT and made.host.plants == []
+
+
+@pytest.mark.parametrize("result", [None, 0, 4])
+def test_of_one_that_is_gone_the_last_answer_counts(result: int | None, clock: SimpleNamespace) -> None:
+    acks = {} if result is None else {foreign._REBOOT: SimpleNamespace(result=result)}
+    made = rebooted(clock, answers=LinkLostError("gone"), acks=acks)
+    if result == 0:
+        made.restart("other")
+        assert made.done[-1] == "found"
+    else:
+        with pytest.raises(LinkLostError if result is None else NotReadyError):
+            made.restart("other")
+        assert made.done == REBOOT
+
+
+@pytest.mark.parametrize(("lost", "comes"), [(2, True), (100, False)])
+def test_a_port_that_closes_while_it_boots_is_opened_again(lost: int, comes: bool, clock: SimpleNamespace) -> None:
+    left = [lost]
+
+    def hear() -> None:
+        left[0] -= 1
+        if left[0] >= 0:
+            raise LinkLostError("closed")
+
+    made = rebooted(clock, 3 if comes else 100, hears=hear)
+    if comes:
+        made.restart("other")
+        assert made.done[-3:] == ["connected", "connected", "found"]
+    else:
+        with pytest.raises(LinkLostError, match="closed"):
+            made.restart("other")
+        assert clock.now == 105.0 and made.done.count("connected") == 4
+
+
 # ---------------------------------------------------------------- what it is made of
 
 
@@ -241,6 +349,30 @@ def test_what_was_started_for_a_link_that_cannot_be_opened_is_closed(monkeypatch
     with pytest.raises(LinkLostError, match="refused"):
         Foreign("host", "plant", "tcp:1", None, StepTelemetry(8), 5.0)  # type: ignore[arg-type]
     assert closed == ["host"]
+
+
+@pytest.mark.parametrize("program", [None, "arducopter"])
+@pytest.mark.parametrize("reset", ["auto", BY_FORCE])
+@pytest.mark.parametrize("is_simulator", [True, False])
+def test_one_that_was_found_where_it_runs_is_to_prove_that_it_is_a_simulator(
+    program: Any, reset: str, is_simulator: bool
+) -> None:
+    """One that was started here is; and the user may say so."""
+    vehicles: Any = object.__new__(ForeignVehicles)
+    vehicles._choice, vehicles.options = SimpleNamespace(program=program), SimpleNamespace(reset=reset)
+    asked: list[bool] = []
+
+    def prove() -> bool:
+        asked.append(True)
+        return is_simulator
+
+    found: Any = SimpleNamespace(prove=prove, name="tcp:1", doubt="it has a serial number", inbox=StepTelemetry(0))
+    if program is None and reset != BY_FORCE and not is_simulator:
+        with pytest.raises(NotASimulatorError, match=r"tcp:1.*it has a serial number"):
+            vehicles._check(found)
+    else:
+        vehicles._check(found)
+    assert bool(asked) == (program is None and reset != BY_FORCE), "else it is not disturbed"
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import pytest
 
 from sitl.envs import EnvOptionError, ids
 from sitl.envs.rewards import EachStep, Forward
+from sitl.envs.targets.moving import Follow
 from sitl.envs.targets.waypoints import Waypoints
 from sitl.envs.tasks import ReachGoal, Task
 from tests.envs.vector_equality import same
@@ -76,6 +77,19 @@ def test_terms_of_a_robot_that_crashes_add_up_too(task, names):
             crashes += info["reward_crash"] == reward == -200.0
             env.reset()
     assert crashes > 0
+
+
+@pytest.mark.parametrize(("lost_reward", "names"), [(0.0, {"nearness"}), (-10.0, {"nearness", "lost"})])
+def test_what_a_lost_target_costs_is_a_term_of_its_own(lost_reward, names):
+    env = gym.make("sitl/CopterFollow-v1", task=Follow(lost=0.001, lost_reward=lost_reward), info=["rewards"])
+    env.reset(seed=1)
+    terminated = False
+    while not terminated:
+        _, reward, terminated, _, info = env.step(np.zeros(4, np.float32))
+        assert {n for n in info if n.startswith("reward_")} == {f"reward_{name}" for name in (*names, "crash", "out")}
+        assert add_up(info) == pytest.approx(reward, abs=1e-9)
+    assert info.get("reward_lost", 0.0) == lost_reward and info["reward_nearness"] > 0.0
+    env.close()
 
 
 def test_the_true_pose_is_where_the_vehicle_really_is():

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from sitl.envs.actions import scale_actions, take_boxed, take_chosen
 from sitl.envs.costs import write_distances
 from sitl.envs.gathering import Known, Last, gather
 from sitl.envs.judge import write_errors
-from sitl.envs.observations import digits_of
+from sitl.envs.observations import Digits, digits_of
 from sitl.envs.parts import write_directions, write_headings
 from sitl.envs.pictures import write_poses
 from sitl.envs.robots.true_state import write_true_reports, write_truth
@@ -244,3 +245,20 @@ def test_what_is_beyond_the_bounds_is_at_them_and_nan_stays() -> None:
     known = KNOWN._replace(state=rows((-math.inf, 2, math.inf), (math.nan, 0.5, 9)))
     found = gathered((gathering.STATE, 0, 0, 3), low=-1.0, high=1.0, known=known)
     assert found[0] == [-1.0, 1.0, 1.0] and math.isnan(found[1][0]) and found[1][1:] == [0.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("readings", "parts", "taken"),
+    [(100, 5, 5), (102, 5, 6), (99, 5, 6), (8, 5, 8), (5, 5, 5), (4, 5, 4), (1, 5, 1), (8, 1000, 8), (7, 1, 1)],
+)
+def test_digits_take_every_so_many_readings_or_each_of_few(readings: int, parts: int, taken: int) -> None:
+    """Every (readings // parts)-th, and where the division has a remainder one more."""
+    scan = np.arange(readings, dtype=np.float32)[None] % 7.0 + 0.5
+    robot: Any = SimpleNamespace(scan=scan, count=1, digit_when_inf=6, range_max=6.9)
+    digits = Digits(parts=parts)
+    space: Any = digits.space(robot)
+    assert space.nvec.tolist() == [7] * taken
+    every = max(readings // parts, 1)
+    assert digits.observe(robot)[0].tolist() == [k % 7 for k in range(0, readings, every)]
+    space = Digits(when_inf=9, parts=parts).space(robot)
+    assert space.nvec.tolist() == [10] * taken, "whatever inf gives is in the space"

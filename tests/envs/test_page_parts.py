@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from sitl.core.algebra import euler_of
 from sitl.envs.page import source, watchers
 from sitl.envs.page.page import EnvPage
-from sitl.envs.page.source import EnvSource, SignalError, beside, poses
+from sitl.envs.page.source import EnvSource, SignalError, beside, poses, states
 from sitl.envs.page.watchers import Directly, InClips
 from sitl.view.layout import GRID, LAYOUTS
 from sitl.worlds import World
@@ -148,6 +149,70 @@ def test_targets_are_marks_in_their_order_in_the_worlds_place_on_the_grid() -> N
     ]  # fmt: skip
     assert found._planned(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), np.array([10.0, 0.0, 0.0])) is plan
     assert found._planned(np.array([[1.0, 2.0, 3.0]]), np.zeros(3)) is not plan
+
+
+@pytest.mark.parametrize(
+    ("yaw", "velocity"),
+    [
+        (0.0, (3.0, -1.0, -0.5)),  # it looks north: left is west
+        (math.pi / 2, (-1.0, -3.0, -0.5)),  # to the left of that, west: its left is south
+        (math.pi, (-3.0, 1.0, -0.5)),
+    ],
+)
+def test_a_frame_is_in_north_east_down(yaw: float, velocity: Any) -> None:
+    """State: x, y, z, yaw counter-clockwise; forward 3, left 1, up 0.5 m/s."""
+    found = sourced()
+    found._ahead, found._offsets, found._rotors = 0.0, np.array([[0.0, 0.0, 0.0], [100.0, 50.0, 0.0]]), ()
+    found._rolled, found._last, found._lidar, found._drawn = np.zeros(2), (0, math.nan), np.zeros(3), None
+    found._plan, found._robot.volume = (b"", source.Plan()), SimpleNamespace(radius=0.25)
+    found._robot.angles, found._robot.range_max = [0.0, 1.0], 5.0
+    state = np.zeros((2, 12))
+    state[1, :8] = 10.0, 20.0, 5.0, yaw, 3.0, 1.0, 0.5, 0.0
+    captured = source.Captured(1, 2.5, state, np.array([1.0, 9.0]), np.zeros((0, 3)), 4, 7.25, {"reward": 1.0}, ())
+    frame = found.frame(captured)
+    assert tuple(frame.vel) == pytest.approx(velocity)
+    assert tuple(frame.pos) == pytest.approx((110.0, -70.0, -5.0)), "beside the first one's world"
+    assert (frame.time_us, frame.mode, frame.signals, frame.company.chosen) == (
+        2_500_000, "episode 4", {"reward": 1.0}, 1,
+    )  # fmt: skip
+    assert dict(frame.facts) == {
+        "time": "2.5 s", "return": "7.25", "position (robot)": "10.00, 20.00, 5.00 m", "speed (robot)": "3.16 m/s",
+    }  # fmt: skip
+    alone = found.frame(captured._replace(chosen=0, state=state[1:]))
+    assert alone.company is None and tuple(alone.pos) == pytest.approx((10.0, -20.0, -5.0))
+
+
+def test_a_robot_that_knows_the_truth_is_drawn_where_it_is() -> None:
+    truth = np.arange(24.0).reshape(2, 12)
+    robot: Any = SimpleNamespace(count=2, pose=np.ones((2, 4)), velocity=np.full((2, 4), 2.0))
+    assert states(robot).tolist() == [[1.0] * 4 + [2.0] * 4 + [0.0] * 4] * 2
+    robot.true_state, robot.camera_mount = (lambda: truth), (0.0, 0.0, 0.0, 0.0)
+    assert (states(robot) == truth).all() and states(robot) is not truth
+
+
+@pytest.mark.parametrize(("yaw", "at"), [(0.0, (9.0, -20.0)), (math.pi / 2, (10.0, -19.0)), (math.pi, (11.0, -20.0))])
+def test_a_body_is_behind_the_base_that_lies_ahead_of_it(yaw: float, at: Any) -> None:
+    state = np.zeros((1, 12))
+    state[0, :4] = 10.0, 20.0, 5.0, yaw
+    pos, (q,) = poses(state, 1.0)
+    assert pos[0].tolist() == pytest.approx((*at, -5.0))
+    assert euler_of(q).yaw == pytest.approx(-yaw) or abs(yaw) == math.pi
+
+
+@pytest.mark.parametrize(
+    ("mount", "lidar", "ahead"),
+    [((0.1, 0.2, 0.3, 0.4), (0.1, -0.2, -0.3), 0.4), (None, (0.0, 0.0, 0.0), 0.0)],
+)
+def test_a_lidar_is_drawn_where_the_robot_has_it(mount: Any, lidar: Any, ahead: float) -> None:
+    """Forward, left, up of its base, and how far that lies ahead [m]; in the scene right and down."""
+    world = load_world("open")
+    robot: Any = SimpleNamespace(count=1, world=world, volume=SimpleNamespace(radius=0.2, bottom=0.0, top=0.3))
+    if mount is not None:
+        robot.camera_mount = mount
+    session: Any = SimpleNamespace(robot=robot, task=None)
+    found = EnvSource(session, "toy")
+    assert found._lidar.tolist() == pytest.approx(lidar) and found._ahead == ahead
+    assert (found.stage.title, found.stage.world, found.stage.company) == ("toy", world, ())
 
 
 def test_a_robots_world_is_drawn_alone_or_with_the_others(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -164,7 +164,10 @@ def test_after_a_boot_what_was_said_before_does_not_count() -> None:
     )  # fmt: skip
     made.forget()
     assert math.isnan(made.position[1]) and (made.origin, made.armed, made.estimator) == (None, False, 0)
+    assert repr(made.position) == repr(StepTelemetry(PART).position)
     assert list(made.last_texts) == [] and made.scans == 1
+    made.feed(part(0, 9.0))
+    assert made.scans == 2 and made.scan[0] == 9.0, "a clock that begins anew may show the same time again"
 
 
 def test_a_memory_goes_on() -> None:

@@ -16,7 +16,7 @@ from pettingzoo.test import parallel_api_test
 
 from sitl.envs.options import EnvOptionError
 from sitl.envs.swarm.parallel import HIT, SwarmEnv
-from sitl.envs.swarm.tasks import TASKS, Crossing, Escort, Formation, Scene
+from sitl.envs.swarm.tasks import HEIGHT, TASKS, Crossing, Escort, Formation, Pursuit, Scene
 from tests.test_docs import ROOT, blocks
 
 GUST = {"SIM_WIND_SPD": 2.0, "SIM_WIND_TURB": 1.0}
@@ -134,6 +134,108 @@ def test_an_episode_pays_its_first_distance_minus_its_last(task: str) -> None:
             paid[k] += rewards[agent] - 0.1 * infos[agent]["is_success"]
             assert not infos[agent]["was_hit"]
     assert paid == pytest.approx(first - far(), abs=1e-9)
+    env.close()
+
+
+def scene(positions: Any, before: Any = None, goals: Any = None) -> Scene:
+    now = np.asarray(positions, float)
+    then = now if before is None else np.asarray(before, float)
+    to = np.zeros_like(now) if goals is None else np.asarray(goals, float)
+    return Scene(now, then, to, to)
+
+
+def apart(*gaps: float) -> list[tuple[float, float, float]]:
+    """Pursuers so far behind the last one [m]."""
+    return [*((-gap, 0.0, -5.0) for gap in gaps), (0.0, 0.0, -5.0)]
+
+
+@pytest.mark.parametrize(("gaps", "caught"), [((2.01, 9.0), False), ((2.0, 9.0), False), ((9.0, 1.99), True)])
+def test_who_is_pursued_is_caught_within_two_metres(gaps: Any, caught: bool) -> None:
+    task, now = Pursuit(3), scene(apart(*gaps), apart(5.0, 5.0))
+    assert task.is_over(now) is caught
+    assert task.is_success(now).tolist() == [caught, caught, not caught], "it succeeds as long as it gets away"
+    gain = 5.0 - min(gaps) + (10.0 if caught else 0.0)
+    assert task.rewards(now) == pytest.approx([gain, gain, -gain])
+
+
+def test_pursuers_are_to_be_where_the_last_one_is_which_is_to_be_far_away() -> None:
+    task, positions = Pursuit(3), np.asarray(apart(4.0, 7.0))
+    task.begin(positions, np.random.default_rng(1))
+    goals = task.goals(positions, 0.0)
+    assert (goals[:2] == positions[-1]).all() and goals[-1, 2] == positions[-1, 2]
+    assert np.linalg.norm(goals[-1] - positions[-1]) == pytest.approx(20.0)
+    moved = positions + (1.0, 2.0, 3.0)
+    assert task.goals(moved, 9.0) == pytest.approx(goals + (1.0, 2.0, 3.0))
+
+
+def test_who_cross_are_to_be_where_the_one_opposite_began() -> None:
+    positions = np.array([(0, 0, 0), (6, 0, 0), (0, 6, 0), (6, 6, 0)], float)
+    task = Crossing(4)
+    task.begin(positions, np.random.default_rng(1))
+    goals = task.goals(positions, 0.0)
+    away = goals[:, :2] - positions[::-1, :2]
+    assert (abs(away) <= 0.5).all() and (away != 0.0).all() and (goals[:, 2] == -HEIGHT).all()
+    assert (task.goals(positions + 1.0, 9.0) == goals).all(), "they stay"
+
+
+@pytest.mark.parametrize("count", [3, 20])
+def test_a_formation_is_a_ring_that_flies_and_turns(count: int) -> None:
+    positions, task = np.random.default_rng(0).uniform(-5.0, 5.0, (count, 3)), Formation(count)
+    task.begin(positions, np.random.default_rng(1))
+    first, later = task.goals(positions, 0.0), task.goals(positions, 10.0)
+    for goals in (first, later):
+        middle = goals.mean(axis=0)
+        radii = np.linalg.norm(goals - middle, axis=1)
+        assert radii == pytest.approx([radii[0]] * count)
+        assert max(4.0, 0.5 * count) - 1e-9 <= radii[0] <= max(7.0, 0.5 * count) + 1e-9
+        gaps = np.linalg.norm(goals - np.roll(goals, 1, axis=0), axis=1)
+        assert gaps == pytest.approx([2.0 * radii[0] * np.sin(np.pi / count)] * count), "as far from each other"
+        assert (goals[:, 2] == -HEIGHT).all()
+    assert first.mean(axis=0)[:2] == pytest.approx(positions.mean(axis=0)[:2])
+    assert np.linalg.norm(later.mean(axis=0) - first.mean(axis=0)) == pytest.approx(5.0), "0.5 m/s"
+    one, other = first[0] - first.mean(axis=0), later[0] - later.mean(axis=0)
+    turned = np.arctan2(one[0] * other[1] - one[1] * other[0], one[:2] @ other[:2])
+    assert turned == pytest.approx(0.5), "0.05 rad/s, to the right"
+
+
+def test_who_escort_keep_around_the_rover_three_metres_above_the_ground() -> None:
+    positions, task = np.random.default_rng(0).uniform(-5.0, 5.0, (4, 3)), Escort(4)
+    assert task.frames == ("erle_copter", "erle_copter", "erle_copter", "ardupilot_rover")
+    task.begin(positions, np.random.default_rng(1))
+    goals = task.goals(positions, 0.0)
+    assert (goals[:3, 2] == -3.0).all()
+    around = goals[:3, :2] - positions[3, :2]
+    assert np.linalg.norm(around, axis=1) == pytest.approx([2.5] * 3) and around.sum(axis=0) == pytest.approx(
+        [0.0, 0.0]
+    )
+    assert 8.0 <= np.linalg.norm(goals[3] - positions[3]) <= 15.0 and goals[3, 2] == positions[3, 2]
+    later = task.goals(positions + 1.0, 5.0)
+    assert (later[3] == goals[3]).all() and later[:3, :2] == pytest.approx(goals[:3, :2] + 1.0)
+
+
+def test_who_is_within_a_metre_is_there_and_gets_a_tenth() -> None:
+    task = Crossing(2)
+    now = scene([(0.99, 0, 0), (0, 0, 1.0)], [(0.99, 0, 0), (0, 0, 1.0)])
+    assert task.is_success(now).tolist() == [True, False] and task.rewards(now) == pytest.approx([0.1, 0.0])
+    assert not task.is_over(now)
+
+
+def test_what_is_reported_is_where_they_are_and_how_fast() -> None:
+    """North, east, down of the world's origin, and each other's and the goal's from there."""
+    starts = [(30.0, -20.0, 0.0, 0.0), (-15.0, 25.0, 0.0, 90.0), (5.0, 40.0, 0.0, 200.0)]
+    env = SwarmEnv(Formation(3), starts=starts, estimator="truth", steps=20)
+    env.reset(seed=1)
+    found: dict[str, Any] = {}
+    for _ in range(15):
+        found = env.step({agent: np.array([0.5, -0.25, 0.1], np.float32) for agent in env.agents})[0]
+    true = env._true_positions()
+    speeds = np.array([tuple(vehicle.v.physics.body.vel) for vehicle in env.swarm.vehicles])
+    assert np.abs(env._reported[:, :3] - true).max() < 0.5 and np.abs(env._reported[:, 3:] - speeds).max() < 0.5
+    assert np.abs(speeds[:, :2]).min() > 0.5
+    for k, agent in enumerate(env.agents):
+        others = [env._reported[j] - env._reported[k] for j in range(3) if j != k]
+        own = np.concatenate((env._reported[k, 3:], env._goals[k] - env._reported[k, :3], *others))
+        assert found[agent] == pytest.approx(own, abs=1e-3)
     env.close()
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +13,14 @@ pytest.importorskip("pettingzoo", reason="PettingZoo is not installed")
 
 from pettingzoo.test import parallel_api_test
 
+from sitl import worlds
 from sitl.envs.options import EnvOptionError
 from sitl.envs.pictures import Camera, Depth
 from sitl.envs.swarm.parallel import SwarmEnv
+from sitl.envs.swarm.sight import Onlooker
 from sitl.envs.swarm.vector import SwarmVectorEnv
+from sitl.vehicle.copter import Copter
+from sitl.vehicles import load
 from tests.envs.vector_equality import same
 
 FACING = [(0.0, 0.0, 0.0, 0.0), (5.0, 0.0, 0.0, 180.0)]
@@ -36,6 +41,47 @@ def flown(steps=6, seed=1, **options):
     assert all(env.observation_space(agent).contains(found[agent]) for agent in env.agents)
     env.close()
     return seen, places
+
+
+def onlooker(*frames, changed=None, number=0):
+    """Of a swarm that the test places; ``changed``: properties of its first airframe."""
+    vehicles = []
+    for frame in frames:
+        airframe = load(frame).changed(**(changed or {})) if frame == frames[0] else load(frame)
+        fleet = Copter.fleet(1)
+        fleet["physics"]["body"]["q"][:, 0] = 1.0
+        vehicles.append(SimpleNamespace(airframe=airframe, fleet=fleet, index=0))
+    scenarios = [SimpleNamespace(world=worlds.load("open"))] * len(frames)
+    found = Onlooker(SimpleNamespace(vehicles=vehicles, scenarios=scenarios), number)
+    return found, [vehicle.fleet[0]["physics"]["body"] for vehicle in vehicles]
+
+
+def test_cameras_are_at_the_lidar_or_on_top():
+    """Forward, left, up [m], level."""
+    assert onlooker("erle_copter")[0].camera_mount == (0.15, 0.0, 0.15, 0.0)
+    moved = onlooker("erle_copter", changed={"lidar_at": (0.1, 0.02, -0.3)})[0]
+    assert moved.camera_mount == (0.1, -0.02, 0.3, 0.0)
+    assert onlooker("ardupilot_rover", changed={"lidar_at": (0.1, 0.02, -0.9)})[0].camera_mount == (0.0, 0.0, 0.3, 0.0)
+
+
+def test_others_are_seen_as_the_discs_of_their_outlines():
+    seen, bodies = onlooker("erle_copter", "erle_rover", "erle_copter")
+    half = np.sqrt(0.5)
+    bodies[1]["pos"], bodies[1]["q"] = (10.0, 20.0, -0.5), (half, 0.0, 0.0, half)  # it looks east
+    bodies[2]["pos"] = (1.0, 2.0, -3.0)
+    discs = seen.others()[0]
+    assert discs[:3] == pytest.approx(
+        np.array([(10.0, 20.0 + along, 0.9, -0.5 - 0.85, -0.5) for along in (0.506, 0.111, -0.284)])
+    )
+    assert discs[3] == pytest.approx((1.0, 2.0, 0.32, -3.17, -3.0)) and len(discs) == 4
+    bodies[1]["q"] = (half, 0.0, half, 0.0)  # it looks up
+    up = seen.others()[0][:3]
+    assert up[:, :2] == pytest.approx(np.array([(10.0, 20.0)] * 3))
+    assert up[:, 4] == pytest.approx([-0.5 - along for along in (0.506, 0.111, -0.284)])
+    beside_none, _ = onlooker("ardupilot_rover", "erle_copter", changed={"contact_radius": 0.0}, number=1)
+    assert beside_none.others().shape == (1, 0, 5), "what touches nothing has no outline"
+    nobody, _ = onlooker("erle_copter")
+    assert nobody.others().shape == (1, 0, 5)
 
 
 def test_two_that_face_each_other_see_each_other():

@@ -70,6 +70,34 @@ def test_a_snapshot_goes_on_bit_for_bit(name):
     assert same(first, [env.step(env.action_space.sample()) for _ in range(8)])
 
 
+@pytest.mark.parametrize(("name", "flies"), [("sitl/RoverReachGoal-v1", False), ("sitl/CopterHover-v1", True)])
+def test_a_position_to_hold_is_near_the_start_and_for_what_drives_as_high(name, flies):
+    env = gym.make(name).unwrapped
+    wide, high = env.session.task.offset
+    away = []
+    for seed in range(20):
+        env.reset(seed=seed)
+        away.append(env.session.task.positions[0, 0] - env.session.task.judged_pose()[0, :3])
+    most = np.abs(away).max(axis=0)
+    assert 0.7 * wide < most[0] <= wide + 1e-9 and 0.7 * wide < most[1] <= wide + 1e-9
+    assert (0.7 * high < most[2] <= high + 1e-9) if flies else most[2] == 0.0
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_what_a_task_keeps_is_a_copy_and_comes_back_in_another_environment(name):
+    env, other = gym.make(name).unwrapped, gym.make(name).unwrapped
+    played(env, 6, 10)
+    kept = env.snapshot()
+    before = pickle.dumps(kept.task)
+    env.step(env.action_space.sample())
+    env.reset(seed=7)
+    assert pickle.dumps(kept.task) == before
+    other.reset(seed=99)
+    assert pickle.dumps(other.snapshot().task) != before
+    other.restore(kept)
+    assert pickle.dumps(other.snapshot().task) == before
+
+
 def test_parts_are_named_and_bounded():
     names = [name for name in PARTS if name not in ("goal_heading", "route")]  # which this task does not have
     env = gym.make("sitl/CopterWaypoint-v0", observation=names)

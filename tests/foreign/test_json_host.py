@@ -16,7 +16,7 @@ from sitl.errors import OptionError
 from sitl.foreign.json_host import JsonHost
 from sitl.plants.local import stand_alone
 from sitl.scenario import DEFAULT_HOME
-from tests.foreign.json_lines import found_by_text
+from tests.bridge.json_lines import found_by_text
 
 ANY = ("127.0.0.1", 0)
 

@@ -25,7 +25,7 @@ from sitl.plants.local import stand_alone
 from sitl.plants.plant import PhysicsLostError
 from sitl.scenario import DEFAULT_HOME
 from sitl.simulation import Simulation
-from tests.foreign import json_lines
+from tests.bridge import json_lines
 
 ANY = ("127.0.0.1", 0)
 REST = (0.0, 0.0, 0.0, 0.0, 0.0, -9.80665, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

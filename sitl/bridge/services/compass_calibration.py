@@ -244,7 +244,8 @@ class CompassCalibrationService(Service):
 
     def _report(self, k: int, state: State) -> None:
         mask = sum(1 << number for number in self._states)
-        if state.fit is None or state.is_running:
+        fit = state.fit
+        if fit is None:
             percent = 100 * len(state.samples) // SAMPLES
             covered = self._covered(state)
             fields = {"attempt": state.attempt, "completion_pct": percent, "completion_mask": covered}
@@ -252,7 +253,6 @@ class CompassCalibrationService(Service):
                 PROGRESS, PROGRESS.payload(compass_id=k, cal_mask=mask, cal_status=state.status, **fields)
             )
             return
-        fit = state.fit
         names = ("ofs_{}", "diag_{}", "offdiag_{}")
         found = {
             name.format(axis): value

@@ -79,7 +79,7 @@ def read(bridge: Host, clients: ClientFiles, path: str, queries: list[str]) -> b
         return pack_mission(bridge, MISSIONS[path])
     if path in _system(bridge):
         return _system(bridge)[path]()
-    if path in (logs := _logs(bridge)) and bridge.logs is not None:
+    if path in (logs := _logs(bridge)):
         return Log(bridge.logs, logs[path])
     return metadata.files(values.table).get(path, clients.read(path))
 

@@ -27,7 +27,7 @@ TUNED: dict[int, tuple[str, ...]] = {
     25: ("ACRO_RP_RATE",), 40: ("ACRO_Y_RATE",), 45: ("ATC_INPUT_TC",), 55: ("MOT_YAW_HEADROOM",),
     58: ("SID_MAGNITUDE",), 59: ("PSC_ANGLE_MAX",),
 }  # fmt: skip
-"""TUNE -> the parameters that the knob sets."""
+"""TUNE -> the parameters that the knob sets; other numbers set none."""
 
 
 class TuningService(StatefulService):
@@ -62,7 +62,7 @@ class TuningService(StatefulService):
         for option, name in KNOBS.items():
             channel, tuned = self._channel(option), int(self._values[name])
             low, high = self._values[f"{name}_MIN"], self._values[f"{name}_MAX"]
-            if channel == 0 or tuned <= 0 or low == high:
+            if channel == 0 or low == high:
                 continue
             pulse = int(rc.channels[channel - 1])
             if pulse > 0 and rc.receiver_ok:

@@ -15,6 +15,7 @@ from sitl.bridge.frame import Splitter
 from sitl.bridge.hil import controls, sensor, truth
 from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING
 from sitl.bridge.hil.controls import (
+    ALIKE,
     LATE,
     LONGEST_WAIT_S,
     SHORTEST_WAIT_S,
@@ -324,6 +325,70 @@ def test_px4_without_a_rhythm_is_not_waited_for_long() -> None:
         bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
         assert bench.there.wait_s > 0.0
     assert bench.there.wait_s == SHORTEST_WAIT_S
+
+
+@pytest.mark.parametrize("rhythm", [1, 2, 3, 4])
+def test_of_a_rhythm_the_ticks_that_are_answered_are_waited_for_though_one_is_missed(rhythm: int) -> None:
+    clock, now = ForeignClock(), 0
+    clock.sent(now)
+    for _ in range(ALIKE + 2):
+        assert clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+        for _ in range(rhythm - 1):
+            clock.gave_up()
+        now += 2500 * rhythm
+    assert clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+    waited = []
+    for _ in range(3 * rhythm):
+        waited.append(clock.wait_s > 0.0)
+        clock.gave_up()
+    assert waited == [k % rhythm == 0 for k in range(1, 3 * rhythm + 1)]
+
+
+@pytest.mark.parametrize("count", [1, 7, TRUSTED])
+def test_ticks_that_were_answered_elsewhere_count_as_if_they_were_answered_here(count: int) -> None:
+    here, there = ForeignClock(), ForeignClock()
+    for clock in (here, there):
+        clock.sent(10_000)
+        assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, 1), 10_000)
+        clock.gave_up()
+        assert clock.asks_for_step(Controls(5000, 1, (0.0,) * 16, 1), 15_000)
+        for k in range(ALIKE + 2):
+            assert clock.asks_for_step(Controls(7500 + 2500 * k, 1, (0.0,) * 16, 1), 17_500 + 2500 * k)
+        clock.gave_up()
+        assert clock.asks_for_step(Controls(27_500, 1, (0.0,) * 16, 1), 37_500)
+        assert clock.began_us == 10_000
+    for clock in (here, there):
+        for k in range(ALIKE + 1):
+            assert clock.asks_for_step(Controls(30_000 + 2500 * k, 1, (0.0,) * 16, 1), 40_000 + 2500 * k)
+    first = 30_000 + 2500 * (ALIKE + 1)
+    for k in range(count):
+        assert here.asks_for_step(Controls(first + 2500 * k, 1, (0.0,) * 16, 129), 10_000 + first + 2500 * k)
+    there.was_answered(count, 10_000 + first + 2500 * count, True)
+    waits = ("_longest_s",) if count == TRUSTED else ()  # it trusts again when it answers here
+    found, wanted = vars(there), vars(here)
+    assert {k: v for k, v in found.items() if k not in waits} == {k: v for k, v in wanted.items() if k not in waits}
+
+
+def test_after_an_answer_that_came_twice_as_many_alike_are_needed_as_before() -> None:
+    clock, now = ForeignClock(), 0
+    clock.sent(now)
+
+    def answered() -> bool:
+        return clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
+
+    assert answered()
+    for _ in range(ALIKE + 2):
+        clock.gave_up()
+        now += 5000
+        assert answered()
+    assert clock.wait_s == 0.0 and not answered()
+    waited = []
+    for _ in range(ALIKE + 1):
+        waited.append(clock.wait_s > 0.0)
+        clock.gave_up()
+        now += 5000
+        assert answered()
+    assert waited == [True] * ALIKE + [False]
 
 
 @pytest.mark.parametrize("mode", [1, 129])

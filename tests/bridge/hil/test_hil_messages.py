@@ -83,6 +83,74 @@ def test_updated_flags_follow_the_counters() -> None:
     assert flags == [0x1BFF, 0x3F, 0x1FF, 0x1A3F]
 
 
+LIMITS = {
+    "xacc": 5000.0, "yacc": 5000.0, "zacc": 5000.0, "xgyro": 500.0, "ygyro": 500.0, "zgyro": 500.0, "xmag": 100.0,
+    "ymag": 100.0, "zmag": 100.0, "abs_pressure": 2000.0, "diff_pressure": 2000.0, "pressure_alt": 100_000.0,
+    "temperature": 300.0,
+}  # fmt: skip
+"""Of HIL_SENSOR, in its units: no sensor shows so much."""
+
+
+@pytest.mark.parametrize(("field", "limit"), LIMITS.items())
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_no_sensor_shows_is_refused_by_its_name(field: str, limit: float, sign: float) -> None:
+    below = float(np.nextafter(np.float32(limit), np.float32(0.0)))
+    sensor.SensorReader.read(sensor.SENSOR_KIND.payload(**{field: sign * below}))
+    for value in (sign * limit, sign * math.inf, math.nan):
+        with pytest.raises(RefusedError, match=rf"HIL_SENSOR\.{field} = .*less than {limit:g} in size"):
+            sensor.SensorReader.read(sensor.SENSOR_KIND.payload(**{field: value}))
+
+
+@pytest.mark.parametrize("k", [0, 7, 15])
+def test_controls_are_less_than_ten_in_size(k: int) -> None:
+    for sign in (1.0, -1.0):
+        values = [0.0] * 16
+        values[k] = sign * float(np.nextafter(np.float32(10.0), np.float32(0.0)))
+        assert controls.read_controls(controls.KIND.payload(controls=values)).outputs[k] == values[k]
+        for value in (sign * 10.0, sign * math.inf, math.nan):
+            values[k] = value
+            with pytest.raises(RefusedError, match=rf"controls\[{k}\] = "):
+                controls.read_controls(controls.KIND.payload(controls=values))
+
+
+@pytest.mark.parametrize("kind", ["sensor", "controls", "gps", "sticks"])
+def test_a_clock_does_not_go_to_the_end_of_its_numbers(kind: str) -> None:
+    title, read = {
+        "sensor": (sensor.SENSOR_KIND, sensor.SensorReader.read),
+        "controls": (controls.KIND, controls.read_controls),
+        "gps": (measurements.GPS_KIND, measurements.GpsReader.read),
+        "sticks": (rc_inputs.KIND, rc_inputs.SticksReader.read),
+    }[kind]
+    read(title.payload(time_usec=(1 << 62) - 1))
+    with pytest.raises(RefusedError, match=f"time_usec.* {1 << 62}"):
+        read(title.payload(time_usec=1 << 62))
+
+
+@pytest.mark.parametrize(
+    ("fields", "taken"),
+    [
+        ({"lat": 900_000_000, "lon": 1_800_000_000}, True), ({"lat": -900_000_000, "lon": -1_800_000_000}, True),
+        ({"lat": 900_000_001}, False), ({"lat": -900_000_001}, False), ({"lon": 1_800_000_001}, False),
+        ({"lon": -1_800_000_001}, False), ({"fix_type": 8}, True), ({"fix_type": 9}, False),
+    ],
+)  # fmt: skip
+def test_a_fix_is_on_the_globe_and_of_a_known_type(fields: Any, taken: bool) -> None:
+    payload = measurements.GPS_KIND.payload(**fields)
+    if taken:
+        assert measurements.GpsReader.read(payload)
+    else:
+        with pytest.raises(RefusedError, match="HIL_GPS"):
+            measurements.GpsReader.read(payload)
+
+
+def test_who_has_just_come_is_told_that_all_samples_are_new() -> None:
+    source = Vehicle()
+    all_of_it = Measurements(source.fleet, source.index, source.v)
+    told = (all_of_it.tick(), all_of_it.everything(), all_of_it.tick())
+    flags = [sensor.SensorReader.read(Splitter().feed(frames)[-1].payload)[14] for frames in told]
+    assert flags == [0x3F, 0x1BFF, 0x3F]
+
+
 @given(
     st.integers(-900_000_000, 900_000_000),
     st.integers(-1_800_000_000, 1_800_000_000),
@@ -237,6 +305,44 @@ def test_truth() -> None:
         truth.read_truth(truth.truth_payload(0, carried._replace(attitude=(1.0, math.nan, 0.0, 0.0))))
 
 
+def test_before_anything_is_known_the_truth_is_at_rest() -> None:
+    assert truth.read_truth(truth.truth_payload(0, truth.NOWHERE)) == (0, truth.NOWHERE)
+    assert truth.NOWHERE.attitude == (1.0, 0.0, 0.0, 0.0) and not any(truth.NOWHERE.rates + truth.NOWHERE.velocity)
+
+
+@pytest.mark.parametrize(("field", "limit"), [("rollspeed", 1e3), ("pitchspeed", 1e3), ("yawspeed", 1e3)])
+def test_rates_of_a_truth_are_less_than_1000_rad_s(field: str, limit: float) -> None:
+    below = float(np.nextafter(np.float32(limit), np.float32(0.0)))
+    for sign in (1.0, -1.0):
+        assert truth.read_truth(truth.TRUTH_KIND.payload(**{field: sign * below}))
+        with pytest.raises(RefusedError, match=f"{field} = "):
+            truth.read_truth(truth.TRUTH_KIND.payload(**{field: sign * limit}))
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_parts_of_an_attitude_are_hardly_above_1(k: int) -> None:
+    for part, taken in ((1.09, True), (-1.09, True), (1.11, False), (-1.11, False)):
+        attitude = [0.0] * 4
+        attitude[k] = part
+        payload = truth.TRUTH_KIND.payload(attitude_quaternion=attitude)
+        if taken:
+            assert truth.read_truth(payload)[1].attitude[k] == pytest.approx(part)
+        else:
+            with pytest.raises(RefusedError, match=f"attitude {'wxyz'[k]}"):
+                truth.read_truth(payload)
+
+
+def test_a_touch_is_slower_than_10_km_s_and_has_a_time() -> None:
+    taker = truth.HitReader(Vehicle().v)
+    for name, x in ((b"HITGROUND", 9999.0), (b"HITSOLID", -9999.0)):
+        assert taker.read(truth.HITS_KIND.payload(name=name, x=x, time_usec=7)) == (7, x, name.decode())
+        for bad in (1e4, -1e4, math.nan):
+            with pytest.raises(RefusedError, match=r"DEBUG_VECT\.x"):
+                taker.read(truth.HITS_KIND.payload(name=name, x=bad))
+    with pytest.raises(RefusedError, match="time_usec"):
+        taker.read(truth.HITS_KIND.payload(name=b"HITSOLID", time_usec=1 << 62))
+
+
 def test_pressure_altitude_of_the_standard_atmosphere() -> None:
     assert sensor.pressure_altitude(1013.25) == pytest.approx(0.0)
     assert sensor.pressure_altitude(954.61) == pytest.approx(500.0, abs=1.0)
@@ -252,6 +358,27 @@ def test_sticks() -> None:
         taker.read(rc_inputs.sticks_payload(5000, (1500, 3000)))
     kind, payload = rc_inputs.frame_for(True, 5000, (1500, 1100))
     assert kind.name == "RC_CHANNELS" and kind.decode(payload).chan2_raw == 1100
+    fields = kind.decode(payload)
+    assert (fields.time_boot_ms, fields.chancount, fields.rssi) == (5, 2, 254), "milliseconds; 254 is the strongest"
+    assert (fields.chan1_raw, fields.chan3_raw) == (1500, 0)
+    assert rc_inputs.frame_for(False, 5000, (1500,)) == (rc_inputs.KIND, rc_inputs.sticks_payload(5000, (1500,)))
+
+
+@pytest.mark.parametrize(
+    ("pulse", "taken"), [(0, 0), (65535, 0), (800, 800), (2200, 2200), (799, None), (2201, None), (1, None)]
+)
+@pytest.mark.parametrize("channel", [1, 12])
+def test_pulses_are_those_that_receivers_give(channel: int, pulse: int, taken: int | None) -> None:
+    """0 and UINT16_MAX: the channel is not used."""
+    pulses = [1500] * 12
+    pulses[channel - 1] = pulse
+    payload = rc_inputs.sticks_payload(7500, (*pulses, 1234))  # of more channels those are left out that have no field
+    if taken is None:
+        with pytest.raises(RefusedError, match=f"chan{channel}_raw = {pulse}: 800 .. 2200 us"):
+            rc_inputs.SticksReader.read(payload)
+    else:
+        time_us, found = rc_inputs.SticksReader.read(payload)
+        assert (time_us, len(found), found[channel - 1]) == (7500, 12, taken)
 
 
 CUT: dict[str, tuple[Any, Any, dict[str, Any]]] = {

@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 
 from sitl.bridge.ardupilot_json.autopilot_end import AutopilotEnd
-from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, lines, ticks
+from sitl.bridge.ardupilot_json.physics_end import Asked, PhysicsEnd, lines, named, ticks
 from sitl.bridge.ardupilot_json.servos import Servos, decode, encode
-from tests.foreign import json_lines
+from tests.bridge import json_lines
 
 HERE, THERE = ("127.0.0.1", 1111), ("127.0.0.1", 2222)
 
@@ -239,3 +239,13 @@ def test_what_is_no_frame_is_not_taken_for_the_one_that_is_answered_already(firs
     assert physics.receive(frame(1, 800), THERE) is Asked.NOTHING, "of another autopilot"
     assert (physics.end.refused, physics.end.count) == (2, 0)
     assert physics.receive(frame(1, 800)) is Asked.AHEAD
+
+
+@pytest.mark.parametrize(
+    ("peer", "said"), [(("127.0.0.1", 9003), "127.0.0.1:9003"), ("serial", "serial"), (("::1", 5, 0, 0), "::1:5:0:0")]
+)
+def test_who_sends_is_named_by_its_address(peer, said):
+    assert named(peer) == said
+    end = PhysicsEnd()
+    assert end.receive(frame(0), peer, 0.0).note == f"autopilot at {said}"
+    assert end.receive(frame(1), THERE, 100.0).note == f"autopilot at {named(THERE)}, before at {said}"

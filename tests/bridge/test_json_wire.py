@@ -12,7 +12,7 @@ import pytest
 from sitl.bridge.ardupilot_json.answer import MotionError
 from sitl.bridge.ardupilot_json.answer import decode as decode_motion
 from sitl.bridge.ardupilot_json.servos import ServoError, Servos, decode, encode, is_frame
-from tests.foreign import json_lines
+from tests.bridge import json_lines
 
 
 @pytest.mark.parametrize(("pulses", "magic", "size"), [(16, 18458, 40), (32, 29569, 72)])
