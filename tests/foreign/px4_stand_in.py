@@ -3,10 +3,10 @@
 on the truth inside.
 
 As the real one (release/1.18 of August 2026): connects to the simulator and tries until it is there; says HEARTBEAT
-and asks for the truth, then nothing until it has booted; its clock is HIL_SENSOR's from the first one on; zeros while
-disarmed, else parts of each motor's range; MAVLink by UDP to 14540 + N first, or as a file in PATH says; OFFBOARD only
-while set-points come; hears commands only while its time passes; modes, whole numbers, missions without home (answered
-by a MISSION_ACK with an extension field that this dialect does not know), take-off above mean sea level.
+and asks for the truth, then nothing until it has booted; its clock is HIL_SENSOR's; zeros while disarmed, else parts
+of each motor's range; MAVLink by UDP to 14540 + N first, or as a file in PATH says; OFFBOARD only while set-points
+come; hears commands only while its time passes; modes, whole numbers, missions without home (answered by a MISSION_ACK
+with an extension field that this dialect does not know), take-off above mean sea level.
 Parameters that it does not have are named in its output. With IMU_INTEG_RATE below the rate of samples its estimator
 runs at each n-th one, and the answers to the others wait for it. MAVLink begins some wall time after it answers.
 LOCAL_POSITION_NED comes at once, with a heading without declination, until ESTIMATOR_STATUS says that it is valid.
@@ -91,7 +91,6 @@ class Px4:
         self.items, self.awaited, self.current = [], 0, 0
         self.every = max(round(400 / given["IMU_INTEG_RATE"]), 1)
         self.answered = None
-        self.began = None
         self.truth, self.origin = None, None
         self.target, self.target_us = (0.0,) * 4, -FRESH_US
         self.place = None
@@ -119,9 +118,7 @@ class Px4:
                         self.answer()
 
     def sense(self, sensor) -> None:
-        if self.began is None:
-            self.began = sensor.time_usec
-        now = sensor.time_usec - self.began
+        now = sensor.time_usec
         assert now > self.now or self.ticks == 0, "time goes forward"
         self.now, self.ticks, self.gyro = now, self.ticks + 1, (sensor.xgyro, sensor.ygyro, sensor.zgyro)
         if self.mode == OFFBOARD and now - self.target_us > LOSS_US:

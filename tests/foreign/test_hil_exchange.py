@@ -43,7 +43,6 @@ class Px4:
         every = _COMMAND.payload(command=511, param1=TRUTH_KIND.id, param2=5000.0)
         self.end.feed(encode_v2(_COMMAND, every, 1, 1, 1))
         self.end.go_on()
-        self.began = self.end.time_us
         while self.end.time_us < BOOTED_US:
             self.end.feed(answer(self.time))
         self.ours, self.theirs = socket.socketpair()
@@ -52,8 +51,8 @@ class Px4:
 
     @property
     def time(self) -> int:
-        """PX4's clock, which began with the first tick that it got [us]."""
-        return self.end.time_us - self.began
+        """PX4's clock: HIL_SENSOR's [us]."""
+        return self.end.time_us
 
     def exchange(self, said: bytes) -> tuple[bytes, bytes]:
         """An exchange in the compiled call: what it sends, and what it leaves to Python."""

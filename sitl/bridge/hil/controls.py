@@ -128,6 +128,9 @@ class ForeignClock:
     present tick is answered. Until then time has to go on by itself, but it stands while late answers come: what cannot
     keep up with the wall clock, on a busy machine, would have more and more ticks under way.
 
+    How late one is can be seen because PX4's clock is HIL_SENSOR's, from 1.14 on. An older one counts from the first
+    tick that it got: all of its answers seem late, and it is in step after ``LATE`` silences.
+
     And PX4 may wait, too, for a tick that it has not got: its controls come when all that it calls lockstep components
     have run, and with IMU_INTEG_RATE below 400 its estimator does not run at each tick. So no tick waits for ever.
     A rover's loop runs at 100 Hz, so that every fourth tick is answered, and none while it is disarmed: the ticks
@@ -140,10 +143,12 @@ class ForeignClock:
     def __init__(self, rests: bool = False) -> None:
         self._rests, self._is_armed = rests, True
         self._since = self._period = self._alike = 0
-        self._first_us = self._answered_us = -1
+        self._answered_us = -1
         self._late = 0
         self._is_in_step, self._is_lockstep, self._catches_up = False, True, False
-        self._lag_us = self._in_step_us = 0
+        self._in_step_us = 0
+        self.began_us = 0
+        """Our time at which its clock was 0, as its answers have it [us]."""
         self._answers = self._in_vain = 0
         self._longest_s = LONGEST_WAIT_S
         self.unanswered = 0
@@ -172,11 +177,6 @@ class ForeignClock:
         """Whether each tick is answered at once, and has been for a while."""
         return self.holds and self._period == 1 and self._alike >= ALIKE and self._longest_s == LONGEST_WAIT_S
 
-    @property
-    def began_us(self) -> int:
-        """Our time at which its clock was 0, as its answers have it [us]."""
-        return self._first_us + self._lag_us
-
     def was_answered(self, ticks: int, now_us: int, is_armed: bool) -> None:
         """So many ticks were answered at once, and the last answer has led to the tick of this time [us]."""
         self._is_armed, self._in_vain, self._since = is_armed, 0, 0
@@ -186,11 +186,6 @@ class ForeignClock:
     def is_starting(self, now_us: int) -> bool:
         """Whether its modules may still be starting at this time [us]."""
         return not self._is_in_step or now_us - self._in_step_us < START_US
-
-    def sent(self, now_us: int) -> None:
-        """It got the tick of this time [us]."""
-        if self._first_us < 0:
-            self._first_us = now_us
 
     def gave_up(self) -> None:
         """The present tick has waited in vain."""
@@ -211,13 +206,15 @@ class ForeignClock:
         self._is_lockstep, self._is_armed = given.is_lockstep, given.is_armed
         self._in_vain = 0
         is_new, self._answered_us = given.time_us > self._answered_us, max(given.time_us, self._answered_us)
-        late_us = now_us - self._first_us - given.time_us
+        late_us = now_us - self.began_us - given.time_us
         if not self._is_in_step:
             if given.is_lockstep and late_us > 0 and late_us % TICK_US == 0 and self._late < LATE:
                 self._catches_up = True
                 return False
-            self._is_in_step, self._lag_us, self._in_step_us = True, late_us, now_us
-        late_us -= self._lag_us
+            self._is_in_step, self._in_step_us = True, now_us
+            self.began_us, late_us = late_us, 0
+        elif late_us < 0 and late_us % TICK_US == 0:  # it answers no tick that it has not got: it was late until now
+            self.began_us, late_us = self.began_us + late_us, 0
         if not (is_new and given.is_lockstep) or (late_us > 0 and late_us % TICK_US == 0):
             self._alike = 0
             return False

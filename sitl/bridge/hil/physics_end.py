@@ -220,7 +220,6 @@ class PhysicsEnd:
         """What the next tick, which is done, has to report."""
         self._now += TICK_US
         self.ticks += 1
-        self.clock.sent(self._now)
         self._tick = self.measurements.tick()
         if self._sticks:
             kind, payload = rc_inputs.frame_for(self._is_foreign, self._now, self._sticks)

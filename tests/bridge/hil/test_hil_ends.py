@@ -207,18 +207,32 @@ def driven(bench: Bench, time_us: int) -> bytes:
 
 
 def test_px4_that_answers_late_is_waited_for_by_going_on() -> None:
-    """Its clock counts from the first tick that it got: at 12.5 ms here it is 10 ms there."""
     bench = Bench()
     bench.there.greet()
     bench.say("HEARTBEAT", autopilot=PX4)
     for _ in range(5):
         bench.there.go_on()
     assert bench.there.freewheels
-    for late in (5000, 7500):  # two ticks are still under way to it
+    for late in (7500, 10_000):  # two ticks are still under way to it
         assert driven(bench, late) == b""
         assert not bench.there.freewheels and bench.there.wait_s == LONGEST_WAIT_S  # none is added to them
-    assert names(driven(bench, 10_000))[-1] == "HIL_SENSOR"
+    assert names(driven(bench, 12_500))[-1] == "HIL_SENSOR"
     assert not bench.there.freewheels and bench.there.time_us == 15_000
+    assert bench.there.clock.began_us == 0
+
+
+def test_px4_that_joins_later_and_answers_late_drives_with_present_controls() -> None:
+    """What a restarted one gets first is no tick of time 0: with that as its beginning, no answer would seem late."""
+    bench = booted_px4()
+    for _ in range(400):
+        bench.there.go_on()
+    bench.there.greet()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    for _ in range(3):
+        bench.there.go_on()
+    now = bench.there.time_us
+    assert driven(bench, now - 5000) == driven(bench, now - 2500) == b""
+    assert driven(bench, now) != b"" and bench.there.clock.began_us == 0
 
 
 def test_px4_that_cannot_keep_up_while_time_goes_by_itself_drives_with_present_controls_later() -> None:
@@ -230,11 +244,11 @@ def test_px4_that_cannot_keep_up_while_time_goes_by_itself_drives_with_present_c
     while not out:
         for _ in range(3 * bench.there.freewheels):
             bench.there.go_on()
-        out = driven(bench, 2500 * answered)
         answered += 1
+        out = driven(bench, 2500 * answered)
         assert answered < 10
     assert bench.there.time_us == 10_000  # three ticks, and the one that the answer to the last has led to
-    assert driven(bench, 2500 * (answered - 1)) == b"" and driven(bench, 2500 * answered) != b""
+    assert driven(bench, 2500 * answered) == b"" and driven(bench, 2500 * (answered + 1)) != b""
     assert bench.there.notes == [] and bench.there.unanswered == 0
 
 
@@ -247,10 +261,11 @@ def test_px4_that_falls_silent_before_it_drives_is_waited_for_by_going_on_again(
     assert driven(bench, 2500) == b"" and not bench.there.freewheels
     assert names(bench.there.go_on())[-1] == "HIL_SENSOR"  # nothing came within ``wait_s``
     assert bench.there.freewheels and bench.there.notes == [] and bench.there.unanswered == 0
-    assert driven(bench, 10_000) != b"" and not bench.there.freewheels
+    assert driven(bench, 12_500) != b"" and not bench.there.freewheels
 
 
-def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
+def behind() -> Bench:
+    """A PX4 that has answered each tick late until it was held for one with another clock."""
     bench = Bench()
     bench.there.greet()
     bench.say("HEARTBEAT", autopilot=PX4)
@@ -263,7 +278,21 @@ def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
         if not out:
             assert not bench.there.freewheels
     assert answers == LATE + 1
-    assert driven(bench, 2500 * answers) != b""
+    return bench
+
+
+def test_a_clock_that_stays_behind_is_another_one_and_stops_nothing() -> None:
+    """So is that of a PX4 before 1.14, which counts from the first tick that it got."""
+    bench = behind()
+    assert bench.there.clock.began_us == 5000
+    assert driven(bench, bench.there.time_us - 5000) != b""
+
+
+def test_px4_that_was_held_for_one_with_another_clock_answers_in_time_later() -> None:
+    bench = behind()
+    assert driven(bench, bench.there.time_us) != b"" and bench.there.clock.began_us == 0
+    assert driven(bench, bench.there.time_us - 2500) == b""  # now that is late
+    assert driven(bench, bench.there.time_us) != b""
 
 
 def booted_px4() -> Bench:
@@ -273,7 +302,7 @@ def booted_px4() -> Bench:
     bench.say("HEARTBEAT", autopilot=PX4)
     assert bench.there.wait_s is None and bench.there.is_starting
     bench.there.go_on()
-    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=0, controls=[0.4], flags=1)
+    assert driven(bench, 2500)
     return bench
 
 
@@ -282,8 +311,8 @@ def test_a_tick_that_px4_does_not_answer_is_followed_by_the_next_one() -> None:
     assert bench.there.wait_s == LONGEST_WAIT_S
     bench.there.go_on()
     assert (bench.there.unanswered, bench.there.wait_s) == (1, 0.5 * LONGEST_WAIT_S)
-    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=2500, controls=[0.5], flags=1) == b""  # of the one before
-    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000, controls=[0.6], flags=1)
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000, controls=[0.5], flags=1) == b""  # of the one before
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=7500, controls=[0.6], flags=1)
     bench.there.go_on()
     assert bench.there.unanswered == 2
     assert [text for text in bench.there.notes if "has not answered" in text] == [
@@ -297,11 +326,11 @@ def test_px4_that_answers_every_second_tick_is_waited_for_at_those_and_trusted_a
     bench = booted_px4()
     for k in range(20):
         bench.there.go_on()
-        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=5000 + 5000 * k, controls=[0.4], flags=1)
+        assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=7500 + 5000 * k, controls=[0.4], flags=1)
     assert bench.there.wait_s == 0.0
     bench.there.go_on()
     assert SHORTEST_WAIT_S <= bench.there.wait_s < LONGEST_WAIT_S
-    now = bench.there.time_us - 2500
+    now = bench.there.time_us
     for k in range(10 * TRUSTED):
         assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=now + 2500 * k, controls=[0.4], flags=1)
     assert bench.there.wait_s == LONGEST_WAIT_S
@@ -313,7 +342,7 @@ def test_time_stands_when_px4_stays_silent_and_goes_on_when_it_answers() -> None
         assert bench.there.wait_s is not None
         bench.there.go_on()
     assert bench.there.wait_s is None and not bench.there.freewheels
-    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+    assert bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us, controls=[0.4], flags=1)
     assert bench.there.wait_s == SHORTEST_WAIT_S
 
 
@@ -322,7 +351,7 @@ def test_px4_without_a_rhythm_is_not_waited_for_long() -> None:
     for k in range(40):
         for _ in range(k % 3 + 1):
             bench.there.go_on()
-        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us, controls=[0.4], flags=1)
         assert bench.there.wait_s > 0.0
     assert bench.there.wait_s == SHORTEST_WAIT_S
 
@@ -330,7 +359,6 @@ def test_px4_without_a_rhythm_is_not_waited_for_long() -> None:
 @pytest.mark.parametrize("rhythm", [1, 2, 3, 4])
 def test_of_a_rhythm_the_ticks_that_are_answered_are_waited_for_though_one_is_missed(rhythm: int) -> None:
     clock, now = ForeignClock(), 0
-    clock.sent(now)
     for _ in range(ALIKE + 2):
         assert clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
         for _ in range(rhythm - 1):
@@ -348,22 +376,21 @@ def test_of_a_rhythm_the_ticks_that_are_answered_are_waited_for_though_one_is_mi
 def test_ticks_that_were_answered_elsewhere_count_as_if_they_were_answered_here(count: int) -> None:
     here, there = ForeignClock(), ForeignClock()
     for clock in (here, there):
-        clock.sent(10_000)
-        assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, 1), 10_000)
+        assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, 1), 0)
         clock.gave_up()
-        assert clock.asks_for_step(Controls(5000, 1, (0.0,) * 16, 1), 15_000)
+        assert clock.asks_for_step(Controls(5000, 1, (0.0,) * 16, 1), 5000)
         for k in range(ALIKE + 2):
-            assert clock.asks_for_step(Controls(7500 + 2500 * k, 1, (0.0,) * 16, 1), 17_500 + 2500 * k)
+            assert clock.asks_for_step(Controls(7500 + 2500 * k, 1, (0.0,) * 16, 1), 7500 + 2500 * k)
         clock.gave_up()
-        assert clock.asks_for_step(Controls(27_500, 1, (0.0,) * 16, 1), 37_500)
-        assert clock.began_us == 10_000
+        assert clock.asks_for_step(Controls(27_500, 1, (0.0,) * 16, 1), 27_500)
+        assert clock.began_us == 0
     for clock in (here, there):
         for k in range(ALIKE + 1):
-            assert clock.asks_for_step(Controls(30_000 + 2500 * k, 1, (0.0,) * 16, 1), 40_000 + 2500 * k)
+            assert clock.asks_for_step(Controls(30_000 + 2500 * k, 1, (0.0,) * 16, 1), 30_000 + 2500 * k)
     first = 30_000 + 2500 * (ALIKE + 1)
     for k in range(count):
-        assert here.asks_for_step(Controls(first + 2500 * k, 1, (0.0,) * 16, 129), 10_000 + first + 2500 * k)
-    there.was_answered(count, 10_000 + first + 2500 * count, True)
+        assert here.asks_for_step(Controls(first + 2500 * k, 1, (0.0,) * 16, 129), first + 2500 * k)
+    there.was_answered(count, first + 2500 * count, True)
     waits = ("_longest_s",) if count == TRUSTED else ()  # it trusts again when it answers here
     found, wanted = vars(there), vars(here)
     assert {k: v for k, v in found.items() if k not in waits} == {k: v for k, v in wanted.items() if k not in waits}
@@ -371,7 +398,6 @@ def test_ticks_that_were_answered_elsewhere_count_as_if_they_were_answered_here(
 
 def test_after_an_answer_that_came_twice_as_many_alike_are_needed_as_before() -> None:
     clock, now = ForeignClock(), 0
-    clock.sent(now)
 
     def answered() -> bool:
         return clock.asks_for_step(Controls(now, 1, (0.0,) * 16, 1), now)
@@ -394,7 +420,6 @@ def test_after_an_answer_that_came_twice_as_many_alike_are_needed_as_before() ->
 @pytest.mark.parametrize("mode", [1, 129])
 def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int) -> None:
     clock = ForeignClock(rests=True)
-    clock.sent(0)
     assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, mode), 0)
     for _ in range(SILENT):
         assert clock.holds
@@ -405,7 +430,6 @@ def test_a_disarmed_rover_that_answers_no_more_goes_by_the_wall_clock(mode: int)
 @pytest.mark.parametrize(("mode", "most"), [(1, SILENT), (129, SILENT_ARMED)])
 def test_time_stands_earlier_in_flight(mode: int, most: int) -> None:
     clock = ForeignClock()
-    clock.sent(0)
     assert clock.asks_for_step(Controls(0, 1, (0.0,) * 16, mode), 0)
     for _ in range(most):
         assert not clock.is_silent
@@ -417,7 +441,7 @@ def test_px4_is_starting_for_some_seconds_after_its_first_answer() -> None:
     bench = booted_px4()
     while bench.there.time_us < START_US:
         assert bench.there.is_starting
-        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us - 2500, controls=[0.4], flags=1)
+        bench.say("HIL_ACTUATOR_CONTROLS", time_usec=bench.there.time_us, controls=[0.4], flags=1)
     bench.there.go_on()
     bench.there.go_on()
     assert not bench.there.is_starting
