@@ -43,11 +43,11 @@ STUB = '#!/bin/sh\nname=${0##*/}\n[ "$name" = pip ] || { printf "%s|" "$name" "$
 @pytest.mark.parametrize(
     ("part", "words"),
     [
-        ((), ["make|lint|", "sitl|cache|ship|--here|--folder|build/core|", "make|test|WORKERS=3|TESTS=|"]),
+        ((), ["make|lint|", "sitl|cache|ship|--here|--folder|build/core|", "make|test|WORKERS=4|TESTS=|"]),
         (("lint",), ["make|lint|", f"python|-m|pytest|{SITE}|"]),
-        (("fast",), ["sitl|cache|ship|--here|--folder|build/core|", 'make|test|WORKERS=3|TESTS=-m "not slow"|']),
+        (("fast",), ["sitl|cache|ship|--here|--folder|build/core|", 'make|test|WORKERS=4|TESTS=-m "not slow"|']),
         (("slow",), ["sitl|cache|ship|--here|--folder|build/core|",
-                     f"make|test|WORKERS=3|TESTS=-m slow --deselect {SITE}|"]),
+                     f"make|test|WORKERS=4|TESTS=-m slow --deselect {SITE}|"]),
     ],
 )  # fmt: skip
 def test_parts_of_continuous_integration_do_together_what_it_does(
