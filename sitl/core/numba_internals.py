@@ -35,7 +35,6 @@ USED = {
         "numba.core.codegen:CPUCodeLibrary._shared_module": None,
         "numba.core.codegen:CodeLibrary._finalized": None,
         "numba.core.codegen:CodeLibrary._raise_if_finalized": 1,
-        "numba.core.codegen:CodeLibrary._reload_init": None,
         "numba.core.codegen:CodeLibrary.name": None,
     },
     "trust_laws": {

@@ -133,7 +133,8 @@ def _link_all(library: Any, own_module: Callable[[Any], Any]) -> None:
     for called in library._linking_libraries:
         visit(called)
     for called in reversed(backwards):
-        library._reload_init.update(called._reload_init)
+        if hasattr(called, "_reload_init"):  # from Numba 0.63 on
+            library._reload_init.update(called._reload_init)
         library._final_module.link_in(own_module(called), preserve=True)
 
 
