@@ -32,6 +32,8 @@ Generation = tuple[int, int]
 CALLED_FROM = 60
 """Lines of NVVM's language from which on a law stays a call. If all were inlined, machine code would be five times as
 long, and ``ptxas`` would work on it for more than ten minutes."""
+_FNEG = re.compile(r"= fneg (float|double) ")
+"""A word that NVVM's language does not have; the same number is what minus zero is without it."""
 _known: set[Callable[..., None]] = set()
 """Units that device code can call."""
 
@@ -102,7 +104,7 @@ def ptx_of(unit: Callable[..., None], path: str, generation: Generation = (9, 0)
     from numba.cuda.cudadrv import nvvm
 
     major, minor = generation
-    given = [_with_calls(module, name) for module in modules]
+    given = [_FNEG.sub(r"= fsub \1 -0.0, ", _with_calls(module, name)) for module in modules]
     text = nvvm.compile_ir(given, opt=3, fma=False, arch=f"compute_{major}{minor}")
     return Ptx(name, text.decode().strip("\x00").strip(), generation)
 
