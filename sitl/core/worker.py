@@ -15,7 +15,6 @@ from __future__ import annotations
 import gc
 import importlib
 import os
-import subprocess
 import sys
 import traceback
 import warnings
@@ -82,7 +81,8 @@ def fork(order: Order, name: str) -> int:
 
 def spawn(order: Order, task: str) -> int:
     """Start a process of its own for a unit, and return its id."""
-    return subprocess.Popen([sys.executable, "-m", "sitl.core.worker", *order.arguments(), "0", task]).pid
+    command = [sys.executable, "-m", "sitl.core.worker", *order.arguments(), "0", task]
+    return os.posix_spawn(sys.executable, command, os.environ)  # Popen would wait for those that nobody holds
 
 
 def compile_all(order: Order, jobs: int, tasks: Sequence[str]) -> int:

@@ -127,3 +127,14 @@ def test_where_a_process_cannot_be_copied_each_unit_has_one_of_its_own(monkeypat
     monkeypatch.setattr(worker.os, "wait", lambda: (len(steps), 0))
     tasks = [f"no_such_module:unit{k}" for k in range(ENOUGH)]
     assert worker.compile_all(Order("a.Record"), 1, tasks) == 0 and steps == tasks
+
+
+def test_processes_that_end_at_the_same_time_are_all_heard_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``subprocess`` would take the end of some for itself as it starts others, and the last would be waited for in
+    vain."""
+    ends_at_once = tmp_path / "python"
+    ends_at_once.write_text("#!/bin/sh\n")
+    ends_at_once.chmod(0o755)
+    monkeypatch.setattr(worker, "FORKS", False)
+    monkeypatch.setattr("sys.executable", str(ends_at_once))
+    assert worker.compile_all(Order("a.Record"), 16, [f"no_such_module:unit{k}" for k in range(300)]) == 0

@@ -167,7 +167,7 @@ def test_a_program_that_does_not_heed_and_its_children_are_ended(grace_s):
     with pytest.raises(ProcessLookupError):
         while True:  # until its new parent has buried it
             os.kill(number, 0)
-            if Path(f"/proc/{number}/stat").read_text().split(")")[1].split()[0] == "Z":
+            if (stat := Path(f"/proc/{number}/stat")).exists() and stat.read_text().split(")")[1].split()[0] == "Z":
                 raise ProcessLookupError
     assert process._process.returncode == -signal.SIGKILL
 

@@ -15,7 +15,7 @@ from ...events import Event, Events, emit
 from ...modes import ModeResult
 from ...notes import ItemReached
 from .. import pilot
-from ..control import motors, speed
+from ..control import speed
 from ..navigation import waypoint
 from ..state import Vehicle
 from . import drive
@@ -24,10 +24,10 @@ from .state import GuidedState, Modes
 
 GUIDED = 15
 
-STOP, POSITION, HEADING_AND_SPEED, TURN_RATE_AND_SPEED, STEERING_AND_THROTTLE = 0, 1, 2, 3, 4
+STOP, POSITION, HEADING_AND_SPEED, TURN_RATE_AND_SPEED = 0, 1, 2, 3
 """What it is doing (``modes.guided.submode``)."""
 TIMEOUT_US = 3_000_000
-"""Velocity, heading, turn-rate and throttle set-points are good for so long (ArduRover's)."""
+"""Velocity, heading and turn-rate set-points are good for so long (ArduRover's)."""
 
 GUIDED_TIMEOUT = Event(9, MavSeverity.WARNING, "target not received last 3secs, stopping")
 GUIDED_REACHED = Event(23, says=lambda v, a, b: [ItemReached(0)])  # the position target
@@ -77,9 +77,6 @@ def run(v: Vehicle) -> None:
         note_arrival(guided, ap.events, v.time_us)
     if kind in (POSITION, STOP) or not guided.has_target:
         speed.stop(control, armed, p)
-    elif kind == STEERING_AND_THROTTLE:
-        motors.set_steering_unscaled(control.motors, guided.steering)
-        motors.set_throttle(control.motors, armed, guided.throttle, p.MOT)
     else:
         if kind == TURN_RATE_AND_SPEED:
             drive.turn(control, ap.estimate, ap.modes.pilot, guided.turn_rate, p)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from ....core.algebra import with_down
 from ....core.kernels import law
 from ....core.mavlink import MavSeverity
-from ....core.scalars import constrain, wrap_pi
+from ....core.scalars import wrap_pi
 from ....core.vectors import Vec2
 from ...command_results import CommandResult
 from ...events import Event
@@ -18,7 +18,7 @@ from ...navigation.path import request_leg
 from ..navigation import waypoint
 from ..state import Vehicle
 from .auto import AUTO, GUIDED_IN_MISSION
-from .guided import GUIDED, HEADING_AND_SPEED, POSITION, STEERING_AND_THROTTLE, STOP, TURN_RATE_AND_SPEED
+from .guided import GUIDED, HEADING_AND_SPEED, POSITION, STOP, TURN_RATE_AND_SPEED
 from .state import GuidedState, Modes
 
 _IGNORED = {
@@ -100,18 +100,6 @@ def set_turn_rate_and_speed(modes: Modes, time_us: int, turn_rate: float, speed:
         begin(guided, time_us, TURN_RATE_AND_SPEED)
         guided.turn_rate = turn_rate
         guided.speed = speed
-    return code
-
-
-@law
-def set_steering_and_throttle(modes: Modes, time_us: int, steering: float, throttle: float) -> int:
-    """Steering and throttle -1 .. 1 directly (ArduRover: for scripts on board; no message asks for it)."""
-    guided = modes.guided
-    code = refusal(modes, steering, throttle)
-    if code == CommandResult.OK:
-        begin(guided, time_us, STEERING_AND_THROTTLE)
-        guided.steering = constrain(steering, -1.0, 1.0)
-        guided.throttle = constrain(throttle, -1.0, 1.0)
     return code
 
 

@@ -24,8 +24,6 @@ class GuidedState(Record):
     heading: float  # HEADING_AND_SPEED [rad]
     turn_rate: float  # TURN_RATE_AND_SPEED [rad/s]
     speed: float  # of both, backward negative [m/s]
-    steering: float  # STEERING_AND_THROTTLE
-    throttle: float
     update_us: int  # when the last set-point came
     has_target: bool  # the set-point under way is fresh enough; else it stops
     arrival_reported: bool  # POSITION: arrival was said

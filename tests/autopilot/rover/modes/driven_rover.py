@@ -191,11 +191,6 @@ def set_turn_rate(v: Any, rate: float, speed: float) -> int:
     return guided_setpoints.set_turn_rate_and_speed(v.autopilot.modes, v.time_us, rate, speed)
 
 
-def set_steering(v: Any, steering: float, throttle: float) -> int:
-    """Steering and throttle for GUIDED."""
-    return guided_setpoints.set_steering_and_throttle(v.autopilot.modes, v.time_us, steering, throttle)
-
-
 def drive_to(v: Any, north: float, east: float) -> int:
     """A position [m] for GUIDED."""
     return guided_setpoints.set_position(v, Vec2(north, east))

@@ -18,7 +18,6 @@ from tests.autopilot.rover.modes.driven_rover import (
     Rover,
     drive_to,
     set_heading,
-    set_steering,
     set_turn_rate,
     set_velocity,
 )
@@ -29,7 +28,6 @@ SETTERS = (
     set_velocity,
     set_heading,
     set_turn_rate,
-    set_steering,
     lambda v, x, y: guided_setpoints.set_limits(v.autopilot.modes.guided, x, y),
 )
 ACTIONS = st.one_of(

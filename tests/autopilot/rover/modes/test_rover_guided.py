@@ -16,7 +16,6 @@ from tests.autopilot.rover.modes.driven_rover import (
     Rover,
     drive_to,
     set_heading,
-    set_steering,
     set_turn_rate,
     set_velocity,
 )
@@ -123,11 +122,6 @@ def test_backwards(rover: Rover) -> None:
 def test_turn_rate_and_speed(rover: Rover) -> None:
     stream(rover, 6.0, set_turn_rate, 0.3, 2.0)
     assert float(rover.ap.estimate.rates[2]) == pytest.approx(0.3, abs=0.02)
-
-
-def test_steering_and_throttle(rover: Rover) -> None:
-    stream(rover, 3.0, set_steering, 0.5, 0.1)
-    assert [int(rover.v.actuators.pwm[k]) for k in (0, 2)] == [1750, 1550]
 
 
 def test_stop(rover: Rover) -> None:

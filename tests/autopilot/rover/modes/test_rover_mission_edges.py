@@ -86,18 +86,11 @@ def test_numbers_of_a_set_point_are_usable_up_to_a_limit(value: float, usable: b
     assert guided_setpoints.are_finite(value, 0.0) == guided_setpoints.are_finite(0.0, value) == usable
 
 
-def test_steering_and_throttle_are_cut_and_a_heading_is_wrapped(rover: Rover) -> None:
+def test_a_heading_is_wrapped_and_a_turn_rate_is_not(rover: Rover) -> None:
     request(rover.v, GUIDED, ModeReason.GCS)
     state = rover.ap.modes.guided
-    assert guided_setpoints.set_steering_and_throttle(rover.ap.modes, 9, 3.0, -3.0) == CommandResult.OK
-    assert (state.steering, state.throttle, state.submode, state.update_us) == (
-        1.0,
-        -1.0,
-        guided.STEERING_AND_THROTTLE,
-        9,
-    )
     guided_setpoints.set_heading_and_speed(rover.ap.modes, 9, 1.5 * math.pi, 2.0)
-    assert (state.heading, state.speed) == (pytest.approx(-0.5 * math.pi), 2.0)
+    assert (state.heading, state.speed, state.update_us) == (pytest.approx(-0.5 * math.pi), 2.0, 9)
     guided_setpoints.set_turn_rate_and_speed(rover.ap.modes, 9, 0.3, -1.0)
     assert (state.turn_rate, state.speed, state.submode) == (0.3, -1.0, guided.TURN_RATE_AND_SPEED)
 
