@@ -3,8 +3,7 @@
 # pymavlink 2.4.50, recv_match(type=...) of a log file: the type of the first call decides which messages all later calls look at.
 # A later call for another type skips the messages of that type and reads to the end. So "the first GPS message for the time, then all
 # ATT" finds no ATT in a DataFlash log, and in a telemetry log (.tlog) only what comes after the last GPS message; nothing is said,
-# None is what the end of a log gives. The same calls on a live connection find all. rewind() in between helps, at the cost of beginning
-# anew; so does one call with all types.
+# None is what the end of a log gives. rewind() in between helps, at the cost of beginning anew.
 # Seen: the lines below. Fails if the later call finds all messages, or rewind() does not help.
 set -euo pipefail
 work=$(mktemp -d)
