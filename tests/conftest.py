@@ -17,6 +17,9 @@ pytest_plugins = ["pytester"]
 for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
+# A page that a test serves is not opened in the browser of who runs the tests. Programs of tests have this, too.
+os.environ["BROWSER"] = "true"
+
 # How long an example takes is the machine's business: a busy one must not fail a test. Nor does a test that nobody
 # touched: examples are the same in each run. Others are drawn by ``pytest --hypothesis-profile default``.
 settings.register_profile("any machine", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])

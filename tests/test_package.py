@@ -124,8 +124,9 @@ def test_the_commands_for_newcomers_work_without_the_repository(wheel: Path, tmp
     assert (desk / "maze.png").read_bytes().startswith(b"\x89PNG")
     typed("-m", "sitl", "examples", "--copy")
     script = ("examples/pymavlink_guided.py", "tcp:127.0.0.1:{tcp}")
-    said = typed("-m", "sitl", "exec", "--speedup", "max", "--tcp", "0", "--out", "none", "--", sys.executable, *script)
-    assert said.rstrip().endswith("landed and disarmed")
+    if sys.platform == "linux":  # elsewhere scripts run in real time
+        words = ("exec", "--speedup", "max", "--tcp", "0", "--out", "none", "--", sys.executable, *script)
+        assert typed("-m", "sitl", *words).rstrip().endswith("landed and disarmed")
     pytest.importorskip("mavsdk")
     for kind in ("copter", "rover"):
         assert "picture: logs/demo-" in typed("-m", "sitl", "demo", kind)

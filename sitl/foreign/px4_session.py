@@ -91,6 +91,8 @@ class Px4Session(SlicedSession):
 
         def goes_on() -> bool:
             nonlocal due_us, looked_us
+            if not running():  # a program may end as its connection does
+                return False
             if process is not None:
                 process.check()
             self.act()
@@ -101,7 +103,7 @@ class Px4Session(SlicedSession):
                 wait = (starting if end.is_starting else pacing).wait_s(passed_us)
                 if wait > 0.0:
                     time.sleep(wait)
-            return running()
+            return True
 
         server.serve(goes_on)
 

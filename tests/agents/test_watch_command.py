@@ -165,14 +165,13 @@ def test_a_window_plays_until_it_is_closed(run, monkeypatch):
 def test_a_window_that_nobody_can_see_is_refused(run, monkeypatch):
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
     with pytest.raises(AgentError, match=r"no screen .neither DISPLAY nor .* is set.*--out FILE\.gif"):
         call(run.path, "--window")
 
 
-def test_the_page_plays_the_episodes_that_are_asked_for(run, capsys, monkeypatch):
+def test_the_page_plays_the_episodes_that_are_asked_for(run, capsys):
     pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
     assert call(run.path, "--episodes", 2, "--max-steps", 3, "--speed", 10_000) == 0
     printed = capsys.readouterr().out
     assert "page: http://127.0.0.1:" in printed and "episode 1: " in printed and "episode 2: " not in printed

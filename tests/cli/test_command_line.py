@@ -23,6 +23,7 @@ from sitl.logs import plot, tlog_flight
 from sitl.simulation import Core
 from sitl.vehicle.kinds import KINDS
 from tests.cli.command import environment, sitl
+from tests.platforms import on_linux
 from tests.ports import free_port
 
 RUN = ("run", "copter", "--out", "none", "--tcp", "0", "--speedup", "max")
@@ -159,6 +160,7 @@ sys.exit(7)
 """
 
 
+@on_linux
 @pytest.mark.slow
 def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Core, tmp_path: Path) -> None:
     (tmp_path / "sleeper.py").write_text(SLEEPER)
@@ -175,6 +177,7 @@ def test_exec_runs_a_script_on_the_vehicles_clock_and_returns_its_code(core: Cor
     assert flown["ATTITUDE"][-1, 0] > 39.0
 
 
+@on_linux
 @pytest.mark.parametrize("count", [(), ("--count", "2")])
 def test_a_script_that_has_not_ended_within_the_duration_has_failed(
     core: Core, tmp_path: Path, count: tuple[str, ...]
@@ -209,6 +212,7 @@ time.sleep(float(sys.argv[1]))
 """
 
 
+@on_linux
 @pytest.mark.slow
 @pytest.mark.parametrize(("sleeps", "code"), [("5", 0), ("1000", 124)])
 def test_exec_leaves_no_process_behind(core: Core, tmp_path: Path, sleeps: str, code: int) -> None:
@@ -251,7 +255,7 @@ def test_two_runs_of_a_rover_write_the_same_log(core: Core, tmp_path: Path) -> N
     [
         ("run", "rover", "--frame", "erle_copter"),
         ("demo", "rover", "--frame", "erle_copter"),
-        ("exec", "--vehicle", "rover", "--frame", "erle_copter", "--", sys.executable),
+        pytest.param(("exec", "--vehicle", "rover", "--frame", "erle_copter", "--", sys.executable), marks=on_linux),
         ("params", "--vehicle", "rover", "--frame", "erle_copter"),
     ],
 )

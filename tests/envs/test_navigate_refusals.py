@@ -235,6 +235,7 @@ def test_a_window_needs_a_screen(monkeypatch, capfd):
     pytest.importorskip("pygame")
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
     env = gym.make(NAVIGATE, render_mode="window")
     says = r'render_mode "window" finds no screen .*; "rgb_array" needs none'
     with pytest.raises(DependencyNotInstalled, match=says):

@@ -25,6 +25,7 @@ from sitl.missions.testing.setup import Defaults, Setup
 from sitl.missions.testing.vehicle import Copter
 from sitl.simulation import Simulation
 from tests.foreign.arducopter_stand_in import install
+from tests.platforms import on_linux
 
 _TEXT, _POSITION = message("STATUSTEXT"), message("HEARTBEAT")
 
@@ -86,6 +87,7 @@ def test_ctrl_c_ends_the_run_and_the_program(arducopter, tmp_path):
     assert process.returncode == 0
 
 
+@on_linux
 @pytest.mark.slow
 def test_a_script_is_run_on_the_clock_of_a_program(arducopter, tmp_path):
     script = tmp_path / "script.py"
@@ -166,6 +168,7 @@ def test_what_only_our_own_autopilot_has_is_refused(tmp_path, capsys, words):
     assert words[0] in capsys.readouterr().err
 
 
+@on_linux
 def test_a_program_that_runs_already_cannot_be_held_by_a_script(capsys):
     from sitl.cli import main
 
@@ -204,6 +207,24 @@ def test_px4_is_run(px4, tmp_path):
     assert "every tick waits for the autopilot" in err
 
 
+def test_a_program_that_ends_because_the_run_is_over_is_no_error(tmp_path, copter_plant):
+    """It loses its connection before the session looks at it for the last time."""
+    program, looks = tmp_path / "px4", []
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    session = Px4Session(choose(f"px4:{program}", "copter"), copter_plant, instance=9)
+    try:
+        session.process.ended(10.0)
+        session.server.serve = lambda goes_on: looks.append(goes_on())
+        session.serve(lambda: False, lambda: None)
+        assert looks == [False]
+        with pytest.raises(AutopilotEndedError, match="ended with code 0"):
+            session.serve(lambda: True, lambda: None)
+    finally:
+        session.close()
+
+
+@on_linux
 @pytest.mark.slow
 def test_a_script_is_run_on_the_clock_of_px4_and_a_parameter_that_it_has_not_is_named(px4, tmp_path):
     script, params = tmp_path / "script.py", tmp_path / "my.params"

@@ -24,12 +24,6 @@ from sitl.view.page import Page
 CIRCUIT2 = "GazeboCircuit2TurtlebotLIDAR-v0"
 
 
-@pytest.fixture(autouse=True)
-def no_browser(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
-
-
 def test_human_opens_the_page_and_draws_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
     env = gym.make(CIRCUIT2, render_mode="human")
     env.reset(seed=1)

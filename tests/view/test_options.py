@@ -9,6 +9,8 @@ from pathlib import Path
 import pytest
 
 from sitl.cli import main
+from sitl.cli.view_options import open_browser
+from tests.platforms import on_linux
 
 pytest.importorskip("viser", reason="the page needs viser: pip install 'gym-sitl[view]'")
 QUIET = ("--out", "none", "--tcp", "0", "--quiet")
@@ -16,8 +18,6 @@ QUIET = ("--out", "none", "--tcp", "0", "--quiet")
 
 @pytest.fixture(autouse=True)
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):  # no browser is opened
-        monkeypatch.delenv(name, raising=False)
     monkeypatch.chdir(tmp_path)
 
 
@@ -27,7 +27,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         ["run", "copter", "--view", "--duration", "1", "--speedup", "max", *QUIET],
         ["run", "copter", "--view-only", "--duration", "1", "--speedup", "max", *QUIET],
         ["run", "rover", "--count", "2", "--view", "--duration", "1", "--speedup", "max", *QUIET],
-        ["exec", "--view", "--duration", "5", *QUIET, "--", sys.executable, "-c", "pass"],
+        pytest.param(["exec", "--view", "--duration", "5", *QUIET, "--", sys.executable, "-c", "pass"], marks=on_linux),
         ["mission", "fly", "copter/square", "--view", "--speedup", "max", "--quiet"],
     ],
     ids=["run", "view-only", "count", "exec", "mission"],
@@ -41,3 +41,19 @@ def test_a_page_is_said(capsys: pytest.CaptureFixture[str], words: list[str]) ->
 def test_options_that_cannot_be_are_refused_first(capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
     assert main([*words, "--view", "--view-token", "a-token-of-some-length"]) == 2
     assert "go together" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("system", "display", "opened"),
+    [("linux", "", []), ("linux", ":0", ["http://127.0.0.1:9"]), ("darwin", "", ["http://127.0.0.1:9"])],
+)
+def test_the_page_opens_in_a_browser_where_one_can_be_seen(
+    monkeypatch: pytest.MonkeyPatch, system: str, display: str, opened: list[str]
+) -> None:
+    found: list[str] = []
+    monkeypatch.setattr("sys.platform", system)
+    monkeypatch.setenv("DISPLAY", display)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr("webbrowser.open", found.append)
+    open_browser("http://127.0.0.1:9")
+    assert found == opened

@@ -7,6 +7,7 @@ import pytest
 
 from sitl.cli import execute, main
 from sitl.warp import CannotBuild, build
+from tests.platforms import on_linux
 
 
 @pytest.fixture(autouse=True)
@@ -16,6 +17,7 @@ def fresh(monkeypatch, tmp_path):
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
 
 
+@on_linux
 def test_no_compiler_says_what_to_install(monkeypatch):
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setattr(build.shutil, "which", lambda _name: None)
@@ -24,18 +26,21 @@ def test_no_compiler_says_what_to_install(monkeypatch):
         build.preload_library()
 
 
+@on_linux
 def test_compiler_that_does_not_exist_is_named(monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
     with pytest.raises(CannotBuild, match="no-such-compiler"):
         build.preload_library()
 
 
+@on_linux
 def test_compiler_that_fails_is_quoted(monkeypatch):
     monkeypatch.setenv("CC", "false")
     with pytest.raises(CannotBuild, match="the C compiler failed: false"):
         build.preload_library()
 
 
+@on_linux
 def test_folder_with_a_space_is_refused(monkeypatch, tmp_path):
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path / "my cache"))
     with pytest.raises(CannotBuild, match="SITL_CACHE_DIR"):

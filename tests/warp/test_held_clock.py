@@ -12,6 +12,7 @@ import pytest
 
 from sitl.warp import CannotBuild, build
 from sitl.warp.held_clock import HeldClock, ProgramGone
+from tests.platforms import on_linux
 
 PROGRAM = r"""
 #include <arpa/inet.h>
@@ -152,6 +153,7 @@ def test_other_systems_are_told_what_is_missing(monkeypatch):
         build.lockstep_library()
 
 
+@on_linux
 def test_no_compiler_says_what_to_install(monkeypatch, tmp_path):
     monkeypatch.setenv("SITL_CACHE_DIR", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)

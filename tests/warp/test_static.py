@@ -11,6 +11,7 @@ import pytest
 
 from sitl.warp import CannotBuild, ClockPage, start_script
 from sitl.warp.build import compiler, static_runtime
+from tests.platforms import on_linux
 from tests.warp.drive import patiently, run_python
 
 SOURCE = r"""
@@ -84,6 +85,7 @@ def test_static_child_of_a_script_is_on_the_clock(program):
     patiently(check)
 
 
+@on_linux
 def test_runtime_runs_other_programs_unchanged():
     with ClockPage() as page:
         page.publish(0, 1.0, 10**12)

@@ -16,6 +16,7 @@ from sitl.foreign.betaflight.configuration import CommandLine
 from sitl.foreign.betaflight.program import Program
 from sitl.foreign.betaflight.receiver import MODES
 from sitl.foreign.process import AutopilotEndedError, free_tcp_run
+from tests.platforms import on_linux
 
 ARM, SET_MODE, DENIED = 400, 176, 2
 READY_S = 6.0
@@ -181,6 +182,7 @@ def test_a_configurator_has_a_port_and_its_save_starts_the_program_again(pilot):
     assert copter.plant.vehicle.v.actuators.pwm[0] == pytest.approx(1090, abs=15)
 
 
+@on_linux
 def test_a_program_that_is_none_says_so(tmp_path, copter_plant):
     script = tmp_path / "not-betaflight"
     script.write_text("#!/bin/sh\necho I am none\nexit 3\n")
