@@ -137,3 +137,31 @@ def test_flow_is_heard_from_a_companion_only(bench: Bench) -> None:
     m.flow_rate_x = math.inf
     take_flow(m, v, SENDER)
     assert flow.count == 1
+
+
+def test_flow_counts_are_turned_into_rates(bench: Bench) -> None:
+    """flow_x and flow_y times the time since the last message, as ArduPilot has it."""
+    v = bench.vehicle.v
+    flow: Any = v.autopilot.flow
+    flow.kind = 5
+    v.time_us, flow.time_us = 1_500_000, 1_000_000
+    v.autopilot.estimate.rates = Vec3(0.3, -0.4, 9.0)
+    for x, y, expected in ((6, 0, (3.0, 0.0)), (0, -4, (0.0, -2.0)), (0, 0, (0.25, 0.5))):
+        flow.time_us = 1_000_000
+        take_flow(filled(OpticalFlow, flow_x=x, flow_y=y, flow_rate_x=0.25, flow_rate_y=0.5), v, SENDER)
+        assert tuple(flow.rate) == expected and tuple(flow.body) == (0.3, -0.4)
+    assert bench.telemetry("OPTICAL_FLOW") != []
+
+
+def test_the_flow_that_is_seen_is_told(bench: Bench) -> None:
+    v = bench.vehicle.v
+    flow, ekf = v.autopilot.flow, v.autopilot.ekf
+    v.time_us = 5_000_000
+    flow.kind, flow.count, flow.time_us, flow.quality = 5, 1, 4_900_000, 200
+    flow.rate, flow.body = (0.5, -0.25), (0.125, 0.5)
+    ekf.terrain_d, ekf.pos = 3.0, Vec3(0.0, 0.0, -7.5)
+    (m,) = bench.telemetry("OPTICAL_FLOW")
+    assert (m.flow_comp_m_x, m.flow_comp_m_y, m.flow_rate_x, m.flow_rate_y) == (0.375, -0.75, 0.5, -0.25)
+    assert (m.time_usec, m.quality, m.ground_distance) == (4_900_000, 200, -1.0)
+    ekf.terrain_us = ekf.now_us = 4_950_000
+    assert bench.telemetry("OPTICAL_FLOW")[0].ground_distance == 10.5
