@@ -13,6 +13,7 @@ from sitl.bridge.links import udp
 from sitl.bridge.links.faults import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink, LogLink
 from sitl.bridge.links.link import Link, Peer, receive_all
+from sitl.bridge.links.tcp import _TcpPeer
 from sitl.bridge.links.udp import DATAGRAM_BYTES, _UdpPeer
 from sitl.errors import OptionError
 
@@ -250,6 +251,91 @@ def test_a_flood_does_not_keep_the_vehicle_from_flying() -> None:
     link = link_of(*[(b"x", ("10.0.0.1", 1))] * 300)
     link._readable()
     assert len(link.peers[0].take()) == 256 and len(link._socket.incoming) == 44
+
+
+# ---------------------------------------------------------------- connections
+
+
+class Connection:
+    """As much of a TCP socket as a peer needs; it takes ``room`` bytes."""
+
+    def __init__(self, room: float = 0.0) -> None:
+        self.room, self.sent, self.incoming = room, list[int](), list[Any]()
+
+    def send(self, data: bytes) -> int:
+        if self.room <= 0:
+            raise BlockingIOError
+        size = int(min(len(data), self.room))
+        self.room -= size
+        self.sent.append(size)
+        return size
+
+    def recv(self, size: int) -> bytes:
+        assert size == 65536
+        found = self.incoming.pop(0)
+        if isinstance(found, Exception):
+            raise found
+        return found  # type: ignore[no-any-return]
+
+
+def connected(room: float = 0.0) -> tuple[Any, Any, Any]:
+    """A peer, its socket and its link."""
+    sock, gone = Connection(room), list[str]()
+    link: Any = SimpleNamespace(forget=lambda peer, sock: gone.append(peer.why_closed), gone=gone)
+    link.deliver = lambda peer, data: peer.deliver(data)
+    return _TcpPeer("t", sock, link), sock, link  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("size", "congested", "dropped"),
+    [
+        (1, False, False), (262_144, False, False), (262_145, True, False), (4_194_304, True, False),
+        (4_194_305, True, True),
+    ],
+)  # fmt: skip
+def test_a_client_that_does_not_read_is_spared_and_then_dropped(size: int, congested: bool, dropped: bool) -> None:
+    peer, sock, link = connected()
+    peer.write(b"a")
+    peer.write(bytes(size - 1))
+    peer.flush()
+    assert (peer.congested, peer.closed, peer.outbox) == (congested, dropped, [])
+    text = "client does not read: 4194305 bytes unsent, at most 4194304 are kept"
+    assert link.gone == [text] * dropped
+    sock.room = 1e9
+    peer.flush()
+    assert sock.sent == ([] if dropped else [65536] * (size // 65536) + [size % 65536] * (size % 65536 > 0))
+
+
+def test_what_a_socket_takes_in_part_goes_on_later() -> None:
+    peer, sock, _ = connected(room=70_000)
+    peer.write(bytes(100_000))
+    peer.flush()
+    sock.room = 1e9
+    peer.flush()
+    assert sock.sent == [65536, 4464, 30_000]
+
+
+HTTP = "client speaks HTTP, not MAVLink"
+
+
+@pytest.mark.parametrize(
+    ("incoming", "heard", "why"),
+    [
+        ([b"abc"], b"abc", None), ([BlockingIOError()], b"", None), ([b""], b"", "client closed the connection"),
+        ([OSError(104, "reset")], b"", "connection lost: reset"), ([OSError("odd")], b"", "connection lost: odd"),
+        ([b"GET / HT"], b"", HTTP), ([b"GE", b"T /"], b"GE", HTTP), ([b"OPTIONS / HTTP"], b"", HTTP),
+        ([b"GETS", b"GET /"], b"GETSGET /", None),
+    ],
+)  # fmt: skip
+def test_what_comes_over_a_connection(incoming: Any, heard: bytes, why: str | None) -> None:
+    peer, sock, link = connected()
+    sock.incoming = list(incoming)
+    for _ in incoming:
+        peer.readable()
+    assert peer.take() == heard and link.gone == ([] if why is None else [why]) and peer.closed == bool(why)
+    peer.drop("again")
+    peer.drop("and again")
+    assert link.gone == [why or "again"], "told once"
 
 
 # ---------------------------------------------------------------- faults
