@@ -40,6 +40,24 @@ def test_streams(profile: Profile) -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
+def test_numbers_of_streams_are_mavlinks(profile: Profile) -> None:
+    """MAV_DATA_STREAM, under the names of ArduPilot's parameters."""
+    assert {number: name for number, (name, _) in profile.groups.items()} == {
+        mavlink.MAV_DATA_STREAM_RAW_SENSORS: "RAW_SENS", mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: "EXT_STAT",
+        mavlink.MAV_DATA_STREAM_RC_CHANNELS: "RC_CHAN", mavlink.MAV_DATA_STREAM_RAW_CONTROLLER: "RAW_CTRL",
+        mavlink.MAV_DATA_STREAM_POSITION: "POSITION", mavlink.MAV_DATA_STREAM_EXTRA1: "EXTRA1",
+        mavlink.MAV_DATA_STREAM_EXTRA2: "EXTRA2", mavlink.MAV_DATA_STREAM_EXTRA3: "EXTRA3",
+    }  # fmt: skip
+
+
+def test_who_it_says_it_is(bench: Bench) -> None:
+    """The capabilities of an ArduCopter, and the version that is followed."""
+    (m,) = bench.telemetry("AUTOPILOT_VERSION")
+    assert (m.capabilities, m.flight_sw_version, m.uid) == (0xFBEF, 4 << 24 | 7 << 16, 1)
+    assert len(bytes(m.flight_custom_version)) == 8 and int(bytes(m.flight_custom_version), 16) >= 0
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
 def test_commands(profile: Profile) -> None:
     known = mavlink.enums["MAV_CMD"]
     for number, entry in profile.commands.items():
