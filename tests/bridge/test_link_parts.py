@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.links import udp
+from sitl.bridge.links import open_link, tcp, udp
 from sitl.bridge.links.faults import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink, LogLink
-from sitl.bridge.links.link import Link, Peer, receive_all
+from sitl.bridge.links.link import Link, LinkAddressError, Peer, receive_all
 from sitl.bridge.links.tcp import _TcpPeer
 from sitl.bridge.links.udp import DATAGRAM_BYTES, _UdpPeer
 from sitl.errors import OptionError
@@ -175,6 +175,7 @@ class Socket:
         self.sent.append((data, address))
 
     def recvfrom(self, size: int) -> Any:
+        assert size == 65535
         if not self.incoming:
             raise BlockingIOError
         found = self.incoming.pop(0)
@@ -435,3 +436,56 @@ def test_words_that_are_no_value_are_named_with_their_option(texts: Any, error: 
     with pytest.raises(OptionError) as told:
         LinkFaults.of_texts(texts)
     assert str(told.value) == error
+
+
+# ---------------------------------------------------------------- how many
+
+
+def test_sixty_four_addresses_are_peers() -> None:
+    link = link_of(*[(b"x", ("10.0.0.1", port)) for port in range(1, 66)])
+    link._readable()
+    assert [peer.address[1] for peer in link.peers] == list(range(2, 66))
+
+
+class Listener(Connection):
+    """A socket that listens; whoever wants to come is let in at once."""
+
+    def accept(self) -> Any:
+        if not self.incoming:
+            raise BlockingIOError
+        made = Connection()
+        made.setblocking = made.setsockopt = made.close = lambda *how: None  # type: ignore[attr-defined]
+        return made, ("10.0.0.1", self.incoming.pop(0))
+
+
+def test_sixty_four_connections_are_peers() -> None:
+    link = tcp.TcpServerLink(0)
+    link._socket.close()
+    link._socket = Listener()  # type: ignore[assignment]
+    link._socket.incoming = list(range(1, 66))  # type: ignore[attr-defined]
+    for _ in range(65):
+        link._accept()
+    assert [peer.name.rpartition(":")[2] for peer in link.peers] == [str(port) for port in range(2, 66)]
+
+
+def test_who_does_not_answer_is_given_five_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def connect(address: Any, seconds: float) -> None:
+        asked.append((address, seconds))
+        raise OSError(111, "Connection refused")
+
+    monkeypatch.setattr(tcp.socket, "create_connection", connect)
+    with pytest.raises(LinkAddressError, match=r"link tcpclient:10\.0\.0\.1:5760 cannot be opened: Connection refused"):
+        tcp.TcpClientLink("10.0.0.1", 5760)
+    assert asked == [(("10.0.0.1", 5760), 5.0)]
+
+
+def test_a_link_that_sends_has_its_peer_from_the_start() -> None:
+    link = open_link("udp:127.0.0.1:14777")
+    assert [peer.name for peer in link.peers] == ["udpout:127.0.0.1:14777 127.0.0.1:14777"]
+    assert isinstance(link, udp.UdpOutLink) and link.local_address[0] == "127.0.0.1"
+    link.close()
+    other = udp.UdpOutLink("10.255.255.1", 14777)
+    assert other.local_address[0] == "0.0.0.0"
+    other.close()

@@ -13,6 +13,7 @@ from sitl.autopilot.copter.modes.mode_list import TITLES
 from sitl.autopilot.rover.modes.mode_list import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links.inprocess import InProcessLink
+from sitl.bridge.wire.streams import interval_of
 from sitl.core.vectors import Vec2, Vec3
 from tests.bridge.fakes import HOME, Bench, Client
 
@@ -302,6 +303,7 @@ def test_a_link_of_high_latency_has_one_message_and_only_when_it_is_on(bench: Be
     assert count(bench, client, 30.0) == 0
     assert bench.command(switch, 1) == 0
     assert count(bench, client, 30.0) == 6
+    assert interval_of(bench.bridge.channels[1].port, 235) == 5_000_000
     client.send(mavlink.MAVLink_command_long_message(1, 1, interval, 0, 235, 1e6, 0, 0, 0, 0, 0))
     client.send(mavlink.MAVLink_request_data_stream_message(1, 1, 0, 10, 1))
     assert count(bench, client, 30.0) == 30
@@ -310,6 +312,13 @@ def test_a_link_of_high_latency_has_one_message_and_only_when_it_is_on(bench: Be
     assert "HIGH_LATENCY2" not in {m.get_type() for m in bench.client.receive()}
     assert bench.command(switch, 1) == 0
     assert count(bench, client, 10.0) == 10
+    client.send(mavlink.MAVLink_command_long_message(1, 1, interval, 0, 235, 0, 0, 0, 0, 0, 0))
+    assert count(bench, client, 30.0) == 6
+    state = bench.bridge.snapshot()
+    assert bench.command(switch, 0) == 0
+    bench.bridge.restore(state)
+    late = high_latency_client(bench)
+    assert count(bench, late, 10.0) == 2, "it is on"
 
 
 def test_what_is_asked_for_follows_the_answer(bench: Bench) -> None:
