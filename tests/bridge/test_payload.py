@@ -71,7 +71,7 @@ def test_a_gripper_closes_and_opens(vehicle: type[FakeVehicle]) -> None:
     assert texts(b, 0.1) == ["Gripper load grabbed"]
     assert b.command(GRIPPER, 2, 0.7) == ACCEPTED  # whole numbers, any gripper
     assert (texts(b, 1.0), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1100)
-    assert b.command(GRIPPER, 1, 2) == FAILED
+    assert b.command(GRIPPER, 1, 2) == FAILED == b.command(GRIPPER, 1, -0.5)
     b.vehicle.parameters["GRIP_ENABLE"] = 0.0
     assert b.command(GRIPPER, 1, 1) == FAILED
     b.bridge.switched(19, HIGH)

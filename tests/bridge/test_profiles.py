@@ -135,6 +135,20 @@ def test_every_command_says_what_it_does() -> None:
         assert len(line.split("|")[5].strip()) > 10, line
 
 
+def test_services_of_others_are_known_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Own(Service):
+        pass
+
+    monkeypatch.setattr(services, "_registered", [])
+    for _ in range(2):
+        services.register_service(Own)
+    assert services.all_services() == (*services.ALL_SERVICES, Own)
+    for odd in ("Own", int):
+        with pytest.raises(TypeError, match="is no subclass"):
+            services.register_service(odd)  # type: ignore[arg-type]
+    assert isinstance(Bench().bridge.get(Own), Own)
+
+
 @pytest.mark.parametrize(
     ("taken", "said"),
     [("PING", "two services handle PING"), ("SET_ATTITUDE_TARGET", "SET_ATTITUDE_TARGET, which a law")],

@@ -362,6 +362,32 @@ def test_the_core_stops_at_a_message_of_the_shell_and_goes_on_behind_it(channel:
     assert (channel.port.frame_end, v.autopilot.modes.number, channel.port.in_size) == (0, 455, 1)
 
 
+def test_a_port_has_space_for_1024_bytes(channel: Channel) -> None:
+    assert not channel.takes(bytes(1025)) and channel.port.in_size == 0
+    assert channel.takes(bytes(1000)) and channel.takes(b"x" * 24) and not channel.takes(b"y")
+    frames.next_frame(channel.port, channel.address)
+    keep_rest(channel.port, channel.address)
+    assert channel.feed(bytes(1030)) == bytes(6) and channel.port.in_size == 1024, "those that there is no space for"
+
+
+def test_what_the_core_made_comes_before_what_the_shell_answers(channel: Channel, v: Copter) -> None:
+    """And after what the shell has queued already."""
+    kind = message("ATTITUDE")
+    given: list[bytes] = []
+    channel.peer.accept = given.append  # type: ignore[method-assign]
+    channel.peer.flush = lambda: given.append(b"flushed")  # type: ignore[method-assign]
+    channel.put(kind, kind.payload())
+    streams.send(v, channel.port, channel.address, kind.id, build)
+    channel.put(kind, kind.payload())
+    assert [frame[4] for frame in channel.peer.outbox] == [0, 1, 2]
+    streams.send(v, channel.port, channel.address, kind.id, build)
+    channel.hand_over()
+    assert given[0] == b"flushed" and given[1][4] == 3 and channel.port.out_count == channel.port.out_size == 0
+    channel.peer.outbox.clear()
+    channel.hand_over()
+    assert given[2:] == [b""]
+
+
 def test_a_watched_port_stops_at_every_frame(channel: Channel, v: Copter) -> None:
     channel.port.stops_at_frames = True
     hear(channel, v, a_ping(1))
