@@ -10,6 +10,10 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.navigation.state import BY_LANDING, BY_PATH
+from sitl.bridge.services.compass_calibration import CompassCalibrationService
+from sitl.core.algebra import quat_from_euler, rotate_inverse
+from sitl.core.earth_field import field_ned
+from sitl.core.vectors import Euler, Vec3
 from tests.bridge.fakes import HOME, Bench
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
@@ -450,3 +454,33 @@ def test_listeners_hear_how_commands_were_understood(bench: Bench) -> None:
         bench.command(number)
     assert heard.told == [(179, 0, True, (255, 190), ACCEPTED), (400, 3, False, (255, 190), ACCEPTED),
                           (999, 3, False, (255, 190), UNSUPPORTED)]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("params", "asked"),
+    [((3, 1, 0, 2.5, 0), (3.0, True, False, 2.5, False)), ((0, 0, 1, 0, 1), (0.0, False, True, 0.0, True))],
+)
+def test_how_compasses_are_to_be_calibrated(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, params: Any, asked: Any
+) -> None:
+    """MAV_CMD_DO_START_MAG_CAL: which, again after a failure, saving, a delay, a reboot."""
+    given: list[Any] = []
+    monkeypatch.setattr(CompassCalibrationService, "start", lambda service, *what: given.append(what) or ACCEPTED)
+    assert bench.command(42424, *params) == ACCEPTED and given == [asked]
+
+
+@pytest.mark.parametrize("here", [True, False])
+def test_offsets_of_compasses_by_a_heading(bench: Bench, here: bool) -> None:
+    """What is shown more than the earth's field of a place, of a vehicle that leans and heads east."""
+    bench.vehicle.locate()
+    v = bench.vehicle.v
+    lat, lon = (1e-7 * HOME[0], 1e-7 * HOME[1]) if here else (47.0, 8.0)
+    v.autopilot.estimate.euler = Euler(0.1, -0.2, 3.0)
+    attitude = quat_from_euler(Euler(0.1, -0.2, math.pi / 2))
+    field = rotate_inverse(attitude, Vec3(*field_ned(lat, lon)))
+    v.sensors.mag2 = field + Vec3(0.01, -0.02, 0.03)
+    assert bench.command(42006, 90, 2, *((0, 0) if here else (lat, lon))) == ACCEPTED
+    values = bench.vehicle.parameters
+    found = [values[f"COMPASS_OFS2_{axis}"] for axis in "XYZ"]
+    assert found == pytest.approx([-10.0, 20.0, -30.0], abs=0.01)
+    assert [values[f"COMPASS_{g}2_{axis}"] for g in ("DIA", "ODI") for axis in "XYZ"] == [1.0] * 3 + [0.0] * 3
