@@ -145,8 +145,6 @@ def _allowed(code: str, length: int) -> str:
     bits = _INTEGER_BITS.get(code.lower())
     if code.endswith("s"):
         return f"bytes (b'...'), at most {code[:-1]}"
-    if code == "c":
-        return "one byte"
     if bits is None:
         one = f"numbers in {'single' if code == 'f' else 'double'} precision"
     else:

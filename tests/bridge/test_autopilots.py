@@ -11,15 +11,21 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.arming_checks import AHRS_TYPE, ARMED, DISARMED, NEED_POSITION, TEXTS
+from sitl.autopilot.copter.modes.auto_yaw import ROI
 from sitl.autopilot.events import emit
 from sitl.autopilot.mission.item import MissionItem
 from sitl.autopilot.mission.mission import Mission
 from sitl.autopilot.mission.sequencer import Sequencer
+from sitl.autopilot.modes import MODE_REFUSED
 from sitl.autopilot.navigation.state import RTL as RTL_LEG
 from sitl.autopilot.navigation.state import RUNNING, STOPPED
+from sitl.autopilot.parameter_checks import Found
+from sitl.autopilot.radio_checks import PARAMETERS
 from sitl.autopilot.rover.modes import guided as guided_mode
+from sitl.autopilot.rover.modes.auto import GUIDED_IN_MISSION, ON_PATH
 from sitl.autopilot.rover.modes.guided import GUIDED_REACHED, GUIDED_TIMEOUT
 from sitl.autopilot.rover.modes.rtl import DESTINATION_REACHED
+from sitl.autopilot.sensor_calibration import NEEDS_LOCATION, PARAMETERS_BAD, SWITCHES_BAD
 from sitl.bridge.base_autopilot import BaseAutopilot
 from sitl.bridge.bridge import Bridge
 from sitl.bridge.copter.autopilot import CopterAutopilot
@@ -500,3 +506,148 @@ def test_some_parameters_count_at_the_moment_of_arming_alone(copter: FirmwareBen
     autopilot._found = [SimpleNamespace(text=text, when_arming=text == "then") for text in ("always", "then")]
     assert autopilot._parameter_texts(False, "PreArm: ") == ["PreArm: always"]
     assert autopilot._parameter_texts(True, "Arm: ") == ["Arm: always", "Arm: then"]
+
+
+# ---------------------------------------------------------------- parameters that keep it from arming
+
+WRONG, THEN, WARNS = Found("wrong", False, True), Found("then", True, True), Found("warns", False, False)
+
+
+def wrong(
+    bench: FirmwareBench, monkeypatch: pytest.MonkeyPatch, *found: Found, ok: bool = True, failed: int = 0
+) -> Any:
+    """Its laws of arming say ``ok``, and that these checks have ``failed``."""
+    monkeypatch.setattr("sitl.bridge.base_autopilot.parameter_checks.look", lambda subject, checks: list(found))
+    autopilot: Any = bench.autopilot
+    autopilot._arming = SimpleNamespace(
+        arm=lambda v, method, force: (ok, ["said"]), check=lambda v: failed,
+        texts=lambda v, bits, prefix: [f"{prefix}{bits}"],
+    )  # fmt: skip
+    autopilot.check_parameters()
+    return autopilot
+
+
+@pytest.mark.parametrize(
+    ("found", "bits"),
+    [((), 0), ((WRONG,), PARAMETERS_BAD), ((THEN,), SWITCHES_BAD), ((WARNS,), 0),
+     ((WARNS, THEN, WRONG), PARAMETERS_BAD | SWITCHES_BAD)],
+)  # fmt: skip
+@pytest.mark.parametrize("needs_location", [0.0, 1.0])
+def test_the_core_knows_what_is_wrong_with_parameters(
+    copter: FirmwareBench, monkeypatch: pytest.MonkeyPatch, found: Any, bits: int, needs_location: float
+) -> None:
+    copter.vehicle.parameters["ARMING_NEED_LOC"] = needs_location
+    calibrated = copter.vehicle.v.autopilot.calibrated
+    every = PARAMETERS_BAD | SWITCHES_BAD | NEEDS_LOCATION
+    other = 1 << 20
+    for before in (0, every):
+        calibrated.state = before | other
+        wrong(copter, monkeypatch, *found)
+        assert calibrated.state == other | bits | (NEEDS_LOCATION if needs_location else 0)
+
+
+@pytest.mark.parametrize(
+    ("ok", "force", "failed", "said"),
+    [
+        (False, False, 0, ["said", "Arm: wrong", "Arm: then", "Arm: warns"]),
+        (False, False, 1, ["said", "Arm: wrong", "Arm: warns"]),
+        (True, False, 0, ["Arm: warns"]), (True, True, 0, ["said"]), (False, True, 0, ["said"]),
+    ],
+)  # fmt: skip
+def test_what_is_said_at_arming(
+    rover: FirmwareBench, monkeypatch: pytest.MonkeyPatch, ok: bool, force: bool, failed: int, said: list[str]
+) -> None:
+    autopilot = wrong(rover, monkeypatch, WRONG, THEN, WARNS, ok=ok, failed=failed)
+    assert autopilot.arm(force) == ok
+    assert [(note.severity, note.text) for note in autopilot.take_notes()] == [(2, text) for text in said]
+    assert autopilot.take_notes() == []
+
+
+@pytest.mark.parametrize(
+    ("found", "failed", "said"),
+    [
+        ((), 0, []), ((WRONG,), 0, []), ((WARNS, THEN), 0, ["warns"]), ((WRONG, THEN), PARAMETERS, ["wrong"]),
+        ((WRONG,), PARAMETERS - 1 & ~PARAMETERS, []),
+    ],
+)  # fmt: skip
+def test_what_is_said_before_arming(
+    rover: FirmwareBench, monkeypatch: pytest.MonkeyPatch, found: Any, failed: int, said: list[str]
+) -> None:
+    """Parameters are named where their check has failed, or where one of them warns only."""
+    autopilot = wrong(rover, monkeypatch, *found, failed=failed)
+    autopilot.run_prearm_checks()
+    assert [note.text for note in autopilot.take_notes()] == [f"PreArm: {text}" for text in (failed, *said)]
+    assert autopilot.prearm_texts(rover.vehicle.v) == [str(failed), *said]
+
+
+@pytest.mark.parametrize(
+    ("failed", "now", "said"), [(PARAMETERS, 0, ["wrong", "then"]), (PARAMETERS, 1, ["wrong"]), (0, 0, [])]
+)
+def test_refusals_name_what_counts_at_that_moment(
+    rover: FirmwareBench, monkeypatch: pytest.MonkeyPatch, failed: int, now: int, said: list[str]
+) -> None:
+    autopilot = wrong(rover, monkeypatch, WRONG, THEN, failed=now)
+    assert autopilot.refusal_texts(failed) == [f"Arm: {text}" for text in (failed, *said)]
+
+
+# ---------------------------------------------------------------- the rest of what services ask
+
+
+def test_modes_that_ground_stations_may_not_choose(copter: FirmwareBench) -> None:
+    copter.ready()
+    autopilot, events = copter.autopilot, copter.vehicle.v.autopilot.events
+    copter.vehicle.parameters["FLTMODE_GCSBLOCK"] = float(1 << 3 | 1 << 4)  # AUTO and GUIDED
+    before = events.count
+    assert autopilot.set_mode(4) and events.count == before, "it is in GUIDED already"
+    assert not autopilot.set_mode(3) and not autopilot.go_back(1) and autopilot.mode() == 4
+    assert [(int(events.code[k]), float(events.a[k])) for k in range(before, events.count)] == 2 * [(MODE_REFUSED, 3.0)]
+
+
+@pytest.mark.parametrize(("mode", "done"), [(4, True), (3, False), (5, False)])
+def test_who_cannot_pause_says_so(copter: FirmwareBench, mode: int, done: bool) -> None:
+    """In GUIDED, and in AUTO on the way to somewhere; a rest goes on in AUTO."""
+    copter.vehicle.v.autopilot.modes.number = mode
+    assert copter.autopilot.pause(True) == done
+    assert copter.autopilot.pause(False) == (mode != 5)
+    texts = ["Failed to pause"] * (not done) + ["Failed to resume"] * (mode == 5)
+    assert [(note.severity, note.text) for note in copter.autopilot.take_notes()] == [(6, text) for text in texts]
+
+
+def test_noses_batteries_sources_and_tags(copter: FirmwareBench) -> None:
+    copter.ready()
+    autopilot, ap = copter.autopilot, copter.vehicle.v.autopilot
+    autopilot.set_roi((1.0, 2.0, -3.0))
+    assert (ap.modes.auto_yaw.mode, tuple(ap.modes.auto_yaw.roi)) == (ROI, (1.0, 2.0, -3.0))
+    autopilot.set_roi(None)
+    assert ap.modes.auto_yaw.mode != ROI
+    autopilot.choose_sources(2)
+    assert ap.ekf.source_set == ap.second_lane.ekf.source_set == 2
+    assert not autopilot.set_battery_left(50.0)
+    ap.params.BATT.MONITOR, ap.params.BATT.CAPACITY = 4.0, 3300.0
+    assert autopilot.set_battery_left(50.0) and ap.battery.consumed_mah == 1650.0
+    items = (*SQUARE, MissionItem(600, 0, p1=7.0), SQUARE[2], MissionItem(600, 0, p1=8.0))
+    assert autopilot.replace_mission(items) == 0 and not autopilot.jump_to_tag(9) and autopilot.current_item() == 0
+    assert autopilot.jump_to_tag(8) and autopilot.current_item() == 5
+    assert autopilot.replace_mission((SQUARE[0], MissionItem(9999))) != 0 and len(autopilot.mission_items()) == 6
+
+
+def test_switches_are_run_and_what_they_say_is_said(copter: FirmwareBench) -> None:
+    ran: list[tuple[int, int]] = []
+    note = SimpleNamespace(severity=6, text="done")
+    copter.vehicle.aux = SimpleNamespace(
+        run=lambda number, position: ran.append((number, position)) or (number == 9, [note])
+    )
+    assert copter.autopilot.run_aux_function(9, 2) is True and copter.autopilot.run_aux_function(8, 0) is False
+    assert ran == [(9, 2), (8, 0)] and copter.autopilot.take_notes() == [note, note]
+
+
+@pytest.mark.parametrize(
+    ("mode", "submode", "waits"), [(AUTO, GUIDED_IN_MISSION, True), (AUTO, ON_PATH, False), (GUIDED, 0, False)]
+)
+def test_missions_of_a_rover_that_wait_for_set_points(
+    rover: FirmwareBench, mode: int, submode: int, waits: bool
+) -> None:
+    modes = rover.vehicle.v.autopilot.modes
+    modes.number, modes.auto.submode = mode, submode
+    assert rover.autopilot.is_guided_in_auto() == waits
+    assert not rover.autopilot.change_reposition_speed(-1.0)

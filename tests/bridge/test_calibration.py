@@ -4,17 +4,22 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from sitl import Simulation
-from sitl.bridge.services.calibration import REPORT_US, CalibrationService
+from sitl.autopilot.estimation.alignment import CALIBRATE
+from sitl.autopilot.sensor_calibration import ACCELS_DONE
+from sitl.bridge.services import calibration
+from sitl.bridge.services.calibration import GYROS, LEVEL, SIMPLE, CalibrationService
 from sitl.client import Client
 from sitl.client.errors import CommandRefusedError
 from sitl.core.algebra import yaw_of
-from tests.bridge.fakes import Bench
+from sitl.core.vectors import Vec3
+from tests.bridge.fakes import Bench, mavlink
 
 IRON = {
     "SIM_MAG1_OFS_X": 100, "SIM_MAG1_OFS_Y": 200, "SIM_MAG1_OFS_Z": -150, "SIM_MAG1_DIA_X": 1.0, "SIM_MAG1_DIA_Y": 1.1,
@@ -217,5 +222,115 @@ def test_a_position_is_asked_for_again_as_soon_as_it_is_due() -> None:
         service.service(due)
         bench.bridge.flush()
         asked.append([m.param1 for m in bench.client.receive("COMMAND_LONG")])
-        assert service.due_us == due + REPORT_US
+        assert service.due_us == due + 1_000_000
     assert asked == [[1.0]] * 4, "once each time"
+
+
+# ---------------------------------------------------------------- step by step, without physics
+
+ACCEPTED, REJECTED, FAILED = 0, 1, 4
+G = 9.80665
+
+
+def resting(bench: Bench, roll: float = 0.0, pitch: float = 0.0) -> CalibrationService:
+    """Shows gravity of a vehicle that leans so [deg]."""
+    bench.run(3.0)
+    r, p = math.radians(roll), math.radians(pitch)
+    acc = Vec3(G * math.sin(p), -G * math.sin(r) * math.cos(p), -G * math.cos(r) * math.cos(p))
+    bench.vehicle.v.sensors.acc, bench.vehicle.v.sensors.gyro = acc, Vec3(0.0, 0.0, 0.0)
+    found: CalibrationService = bench.bridge.get(CalibrationService)
+    return found
+
+
+def values(bench: Bench, group: str) -> list[float]:
+    return [bench.vehicle.parameters[f"{group}_{axis}"] for axis in "XYZ"]
+
+
+def test_gyros_are_measured_for_a_second(bench: Bench) -> None:
+    service, v = resting(bench), bench.vehicle.v
+    v.autopilot.params.INS.GYROFFS.Y = 0.01
+    v.autopilot.ekf.gyro_bias = Vec3(0.5, 0.25, 0.0)
+    assert service.start(GYROS) == ACCEPTED
+    assert service.start(GYROS) == service.start_positions() == REJECTED and service.is_in_position(1.0) == FAILED
+    v.sensors.gyro = Vec3(0.04, 0.0, 0.0)
+    bench.run(0.5)
+    v.sensors.gyro = Vec3(0.0, 0.0, -0.02)
+    bench.run(0.4975)
+    assert values(bench, "INS_GYROFFS") == [0.0, 0.01, 0.0]
+    bench.run(0.0025)
+    assert values(bench, "INS_GYROFFS") == pytest.approx([0.02, 0.0, -0.01], abs=1e-7)
+    assert tuple(v.autopilot.ekf.gyro_bias) == pytest.approx((0.48, 0.26, 0.01), abs=1e-7)
+    assert service.start(GYROS) == ACCEPTED, "it is over"
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "result"), [(9.9, 0.0, ACCEPTED), (0.0, -9.9, ACCEPTED), (10.1, 0.0, FAILED), (0.0, 10.1, FAILED)]
+)
+def test_who_leans_by_more_than_ten_degrees_is_not_level(bench: Bench, roll: float, pitch: float, result: int) -> None:
+    assert resting(bench, roll, pitch).start(LEVEL) == result
+    bench.client.receive()
+    bench.run(1.0)
+    texts = [m.text.replace("-0.00", "0.00") for m in bench.client.receive("STATUSTEXT")]
+    assert texts == [f"Trim OK: roll={roll:.2f} pitch={pitch:.2f} yaw=0.00"] * (result == ACCEPTED)
+    trim = (math.radians(roll), math.radians(pitch)) if result == ACCEPTED else (0.0, 0.0)
+    assert values(bench, "AHRS_TRIM")[:2] == pytest.approx(trim, abs=1e-6)
+
+
+@pytest.mark.parametrize("phase", [CALIBRATE, CALIBRATE + 1])
+def test_level_accelerometers_have_offsets_and_no_trim(bench: Bench, phase: int) -> None:
+    service, ap = resting(bench), bench.vehicle.v.autopilot
+    bench.vehicle.v.sensors.acc = Vec3(0.5, -0.25, -G + 0.75)
+    bench.vehicle.parameters["AHRS_TRIM_X"], ap.ekf.phase = 0.1, phase
+    ap.params.INS.ACCSCAL.X = 1.05
+    assert service.start(SIMPLE) == ACCEPTED
+    bench.run(1.0)
+    assert values(bench, "INS_ACCOFFS") == pytest.approx([0.5, -0.25, 0.75], abs=1e-6)
+    assert values(bench, "INS_ACCSCAL") == [1.0, 1.0, 1.0] and values(bench, "AHRS_TRIM")[:2] == [0.0, 0.0]
+    assert ap.ekf.good_acc.z == (0.0 if phase == CALIBRATE else pytest.approx(-G, abs=1e-6))
+
+
+@pytest.mark.parametrize(
+    ("fitness", "offset", "scale", "good"),
+    [
+        (0.09, 3.4, 1.2, True), (0.1, 0.0, 1.0, False), (0.0, 3.5, 1.0, False), (0.0, -3.5, 1.0, False),
+        (0.0, 0.0, 0.8, True), (0.0, 0.0, 0.79, False), (0.0, 0.0, 1.21, False),
+    ],
+)  # fmt: skip
+def test_six_positions_and_what_comes_of_them(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, fitness: float, offset: float, scale: float, good: bool
+) -> None:
+    """Each is asked for once a second until a client says so; the result is told in the same way."""
+    service, seen = resting(bench), []
+    fit = SimpleNamespace(fitness=fitness, offset=(0.0, offset, 0.0), scale=(1.0, 1.0, scale))
+    monkeypatch.setattr(calibration, "fit_accelerometer", lambda means: seen.append(means.copy()) or fit)
+    bench.client.receive()
+    assert service.start_positions() == ACCEPTED
+    for number in range(1, 7):
+        bench.run(1.0)
+        heard = bench.client.receive("COMMAND_LONG", "STATUSTEXT")
+        asked = [m for m in heard if m.get_type() == "COMMAND_LONG"]
+        assert {m.command for m in asked} == {42429} and asked[-1].param1 == number
+        assert len(asked) == (1, 3, 2, 2, 2, 2)[number - 1], "at once, and a second later"
+        assert [m.severity for m in heard if m.get_type() == "STATUSTEXT"] == [2]
+        assert service.is_in_position(number + 1.0) == FAILED and service.start(GYROS) == REJECTED
+        if number == 1:
+            bench.client.send(mavlink.MAVLink_command_ack_message(0, 0))
+            bench.bridge.receive()
+        else:
+            assert service.is_in_position(float(number)) == ACCEPTED
+        bench.vehicle.v.sensors.acc = Vec3(float(number), 0.0, -G)
+        bench.client.receive()
+        bench.run(1.0)
+    result = 16777215 if good else 16777216
+    assert seen[0] == pytest.approx(np.array([[k, 0.0, -G] for k in range(1, 7)]), abs=1e-6)
+    heard = bench.client.receive("COMMAND_LONG", "STATUSTEXT")
+    assert {m.param1 for m in heard if m.get_type() == "COMMAND_LONG"} >= {result}
+    assert ("Calibration successful" if good else "Calibration FAILED") in [
+        m.text for m in heard if m.get_type() == "STATUSTEXT"
+    ]
+    bench.run(2.0)
+    assert [m.param1 for m in bench.client.receive("COMMAND_LONG")] == [result] * 2
+    assert bool(bench.vehicle.v.autopilot.calibrated.state & ACCELS_DONE) == good
+    assert values(bench, "INS_ACCOFFS") == pytest.approx([0.0, offset * good, 0.0])
+    assert values(bench, "INS_ACCSCAL") == pytest.approx([1.0, 1.0, scale if good else 1.0])
+    assert service.is_in_position(float(result)) == FAILED and service.start(GYROS) == ACCEPTED

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -43,8 +44,10 @@ def pulses(b: Bench) -> list[int]:
     return [p for k, p in enumerate(found) if k == 0 or p != found[k - 1]]
 
 
-def test_without_a_camera() -> None:
-    b = bench(0.0)
+@pytest.mark.parametrize("kind", [0.0, 2.0, 3.0, 6.0])
+def test_without_a_camera(kind: float) -> None:
+    """CAM1_TYPE 1 servo, 4 relay, 5 MAVLink; the others are of cameras that are not simulated."""
+    b = bench(kind)
     for number in (CONFIGURE, CONTROL, DISTANCE, STOP):
         assert b.command(number, *SHOT) == ACCEPTED
     assert b.command(START, 0, 0, 1) == FAILED
@@ -265,3 +268,59 @@ def test_the_most_and_the_longest_that_can_be_asked_for() -> None:
         (ACCEPTED, (1, 0, 2)),
     ):
         assert b.command(START, *params) == asked, params
+
+
+@pytest.mark.parametrize("output", [1, 16])
+def test_any_output_may_trigger_it(output: int) -> None:
+    b = bench(SERVO9_FUNCTION=0.0, **{f"SERVO{output}_FUNCTION": 10.0})
+    assert b.command(CONTROL, *SHOT) == ACCEPTED
+    assert {call[1] for call in b.autopilot.calls if call[0] == "set_servo"} == {output}
+
+
+@pytest.mark.parametrize("is_set", [True, False])
+def test_heights_above_home_need_a_home(is_set: bool) -> None:
+    b = bench()
+    b.vehicle.v.autopilot.home.is_set, b.vehicle.v.autopilot.estimate.pos = is_set, Vec3(0.0, 0.0, -7.0)
+    assert b.command(CONTROL, *SHOT) == ACCEPTED
+    (m,) = b.telemetry("CAMERA_FEEDBACK")
+    assert (m.alt_msl, m.alt_rel) == (591.0, 7.0 if is_set else 0.0)
+
+
+def test_the_distance_counts_from_where_it_was_set() -> None:
+    b = bench()
+    assert b.command(CONTROL, *SHOT) == ACCEPTED
+    assert drive(b, 5.0) == 0
+    assert b.command(DISTANCE, 3.0, 0, 0) == ACCEPTED
+    b.run(0.1)
+    assert (drive(b, 2.5), drive(b, 1.0)) == (0, 1)
+
+
+def test_without_a_position_no_distance_is_counted() -> None:
+    b = bench(CAM1_TRIGG_DIST=2.0)
+    b.run(0.1)
+    b.vehicle.v.autopilot.estimate.position_ok = 0
+    assert drive(b, 5.0) == 0
+    b.vehicle.v.autopilot.estimate.position_ok = 1
+    assert len(pictures(b, 0.1)) == 1
+
+
+@pytest.mark.parametrize("on", [1.0, 0.0])
+def test_a_relay_is_on_or_off_while_it_triggers(on: float) -> None:
+    b = bench(4.0, RELAY2_FUNCTION=4.0, RELAY2_PIN=2.0, CAM1_RELAY_ON=on, CAM1_DURATION=0.2)
+    assert b.command(START, 1, 0, 1) == ACCEPTED
+    seen = [b.vehicle.parameters["SIM_PIN_MASK"]]
+    b.run(0.3)
+    seen.append(b.vehicle.parameters["SIM_PIN_MASK"])
+    assert seen == ([4.0, 0.0] if on else [0.0, 4.0])
+
+
+def test_pictures_that_were_asked_for_at_an_interval_come_at_it() -> None:
+    b = bench()
+    b.run(0.1)
+    assert b.command(START, 0, 0.25, 4) == ACCEPTED
+    b.client.receive()
+    times = []
+    for _ in range(600):
+        b.run(TICK)
+        times += [b.vehicle.time_us for _ in b.client.receive("CAMERA_FEEDBACK")]
+    assert [after - before for before, after in pairwise(times)] == [260_000] * 3, "it looks 50 times a second"

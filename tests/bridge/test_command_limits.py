@@ -348,3 +348,23 @@ def test_fences_are_switched_one_by_one_or_all(
     done: list[Any] = []
     monkeypatch.setattr(command_table, "switch_by_user", lambda fence, on, which, *rest: done.append((on, which)))
     assert located.command(207, *params) == ACCEPTED and done == [asked]
+
+
+def test_a_reposition_needs_guided(located: Bench) -> None:
+    located.autopilot.set_mode = lambda number: False  # type: ignore[method-assign]
+    assert command_int(located, 192, 3, *HERE, 10.0, -1.0, 1.0) == FAILED
+    assert not [call for call in located.autopilot.calls if call[0] == "guided_position"]
+
+
+@pytest.mark.parametrize(
+    ("params", "result"),
+    [
+        ((1, 2), ACCEPTED), ((1, 4), FAILED), ((1, 6), ACCEPTED), ((0, 4), ACCEPTED), ((2, 0), ACCEPTED),
+        ((2, 4), FAILED), ((2.5, 0), FAILED), ((-0.5, 0), FAILED), ((1, 16), FAILED), ((1, -1), FAILED),
+        ((0.5, 4), ACCEPTED),
+    ],
+)  # fmt: skip
+def test_a_fence_that_there_is_not_is_not_switched_on(located: Bench, params: Any, result: int) -> None:
+    """FENCE_TYPE 3: height and circle."""
+    located.vehicle.parameters.update({"FENCE_TYPE": 3.0})
+    assert located.command(207, *params) == result

@@ -9,6 +9,11 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from sitl.autopilot.navigation.state import BY_LANDING, BY_PATH
+from sitl.bridge.services.compass_calibration import CompassCalibrationService
+from sitl.core.algebra import quat_from_euler, rotate_inverse
+from sitl.core.earth_field import field_ned
+from sitl.core.vectors import Euler, Vec3
 from tests.bridge.fakes import HOME, Bench
 
 ACCEPTED, TEMPORARILY_REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
@@ -360,3 +365,122 @@ def test_a_range_of_no_pulses_has_no_throttle(bench: Bench, least: float, most: 
     for kind in (0, 1):
         assert bench.command(209, 1, kind, 10.0, 2.0) == ACCEPTED
     assert {call[3] for call in bench.autopilot.calls if call[0] == "test_motor"} == {-1.0}
+
+
+@pytest.mark.parametrize(
+    ("seconds", "count", "each"),
+    [(2.0, 1, 2.0), (1000.0, 1, 600.0), (-5.0, 1, 0.0), (2.0, 0, 2.0), (2.0, 2, 4.0), (2.0, 999, 4.0)],
+)
+def test_a_motor_is_tested_for_its_time_and_while_another_follows_longer(
+    bench: Bench, seconds: float, count: float, each: float
+) -> None:
+    """Ten minutes at most; half of the time and a second more before the next one."""
+    assert bench.command(209, 1, 0, 50.0, seconds, count) == ACCEPTED
+    assert [call[-1] for call in bench.autopilot.calls if call[0] == "test_motor"] == [each]
+
+
+def test_motors_are_tested_in_turn_after_pauses_of_half_the_time(bench: Bench) -> None:
+    def tested(seconds: float) -> list[tuple[Any, ...]]:
+        bench.autopilot.calls.clear()
+        bench.run(seconds)
+        return [call for call in bench.autopilot.calls if call[0] in ("test_motor", "rest_tested_motor")]
+
+    bench.run(3.0)
+    assert bench.command(209, 2, 0, 50.0, 2.0, 3, 2.0) == ACCEPTED
+    assert tested(1.9975) == [] and tested(0.0025) == [("rest_tested_motor",)]
+    assert tested(0.9975) == [] and tested(0.0025) == [("test_motor", 3, False, 0.5, 4.0)]
+    assert tested(3.0) == [("rest_tested_motor",), ("test_motor", 4, False, 0.5, 2.0)]
+    assert tested(10.0) == [], "the vehicle's own law ends the last one"
+
+
+@pytest.mark.parametrize(
+    ("params", "given"),
+    [
+        ((0, 0, 0, 0), (0.0, 0.0, 0, False)), ((360, 10, 1, 1), (360.0, 10.0, 1, True)),
+        ((90, -5, -0.5, 0), (90.0, 0.0, -1, False)), ((90, 5, 0.5, 1), (90.0, 5.0, 1, True)),
+        ((360.5, 0, 0, 0), None), ((-0.5, 0, 0, 0), None), ((90, 0, 0, 0.5), None), ((90, 0, 0, 2), None),
+    ],
+)  # fmt: skip
+def test_headings_that_can_be_turned_to(bench: Bench, params: Any, given: Any) -> None:
+    assert bench.command(115, *params) == (FAILED if given is None else ACCEPTED)
+    told = [call[1:] for call in bench.autopilot.calls if call[0] == "condition_yaw"]
+    assert told == ([] if given is None else [(math.radians(given[0]), math.radians(given[1]), *given[2:])])
+
+
+@pytest.mark.parametrize(("number", "p1", "result", "call"), [
+    (185, 0.5, FAILED, []), (185, 0.51, ACCEPTED, [("terminate",)]), (188, 0, ACCEPTED, [("go_back", BY_PATH)]),
+    (189, 0, ACCEPTED, [("go_back", BY_LANDING)]), (193, 0.9, ACCEPTED, [("pause", True)]), (193, -1, DENIED, []),
+    (178, 0, DENIED, []), (32000, 0.5, ACCEPTED, []), (32, 0.5, ACCEPTED, []),
+])  # fmt: skip
+def test_what_only_copters_do(bench: Bench, number: int, p1: float, result: int, call: Any) -> None:
+    assert bench.command(number, p1) == result and bench.autopilot.calls == call
+
+
+@pytest.mark.parametrize(
+    ("location", "asked"),
+    [
+        ((0, 0, 0.0), [None]), ((0, 0, 5.0), "there"), ((1, 0, 0.0), "there"), ((0, 1, 0.0), "there"),
+        ((900_000_001, 0, 0.0), []),
+    ],
+)  # fmt: skip
+def test_the_nose_of_a_copter_is_pointed_at_a_location(bench: Bench, location: Any, asked: Any) -> None:
+    result = command_int(bench, 195, 0, *location)
+    assert result == (FAILED if asked in ("there", []) else ACCEPTED), "without an origin nowhere is known"
+    bench.vehicle.locate()
+    bench.autopilot.calls.clear()
+    command_int(bench, 195, 0, *location)
+    found = [call[1] for call in bench.autopilot.calls if call[0] == "set_roi"]
+    assert found == ([bench.bridge.locations.ned(*location, 0)] if asked == "there" else asked)
+
+
+class Heard:
+    """A listener of commands."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[Any, ...]] = []
+
+    def commanded(self, fields: Any, *rest: Any) -> None:
+        self.told.append((fields.command, *rest))
+
+    def said(self, severity: int, text: str) -> None: ...
+
+
+def test_listeners_hear_how_commands_were_understood(bench: Bench) -> None:
+    """The frame of a COMMAND_LONG, and whether its p5 and p6 are degrees."""
+    bench.vehicle.locate()
+    heard: Any = Heard()
+    bench.bridge.listeners.append(heard)
+    for number in (179, 400, 999):
+        bench.command(number)
+    assert heard.told == [(179, 0, True, (255, 190), ACCEPTED), (400, 3, False, (255, 190), ACCEPTED),
+                          (999, 3, False, (255, 190), UNSUPPORTED)]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("params", "asked"),
+    [((3, 1, 0, 2.5, 0), (3.0, True, False, 2.5, False)), ((0, 0, 1, 0, 1), (0.0, False, True, 0.0, True))],
+)
+def test_how_compasses_are_to_be_calibrated(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, params: Any, asked: Any
+) -> None:
+    """MAV_CMD_DO_START_MAG_CAL: which, again after a failure, saving, a delay, a reboot."""
+    given: list[Any] = []
+    monkeypatch.setattr(CompassCalibrationService, "start", lambda service, *what: given.append(what) or ACCEPTED)
+    assert bench.command(42424, *params) == ACCEPTED and given == [asked]
+
+
+@pytest.mark.parametrize("here", [True, False])
+def test_offsets_of_compasses_by_a_heading(bench: Bench, here: bool) -> None:
+    """What is shown more than the earth's field of a place, of a vehicle that leans and heads east."""
+    bench.vehicle.locate()
+    v = bench.vehicle.v
+    lat, lon = (1e-7 * HOME[0], 1e-7 * HOME[1]) if here else (47.0, 8.0)
+    v.autopilot.estimate.euler = Euler(0.1, -0.2, 3.0)
+    attitude = quat_from_euler(Euler(0.1, -0.2, math.pi / 2))
+    field = rotate_inverse(attitude, Vec3(*field_ned(lat, lon)))
+    v.sensors.mag2 = field + Vec3(0.01, -0.02, 0.03)
+    assert bench.command(42006, 90, 2, *((0, 0) if here else (lat, lon))) == ACCEPTED
+    values = bench.vehicle.parameters
+    found = [values[f"COMPASS_OFS2_{axis}"] for axis in "XYZ"]
+    assert found == pytest.approx([-10.0, 20.0, -30.0], abs=0.01)
+    assert [values[f"COMPASS_{g}2_{axis}"] for g in ("DIA", "ODI") for axis in "XYZ"] == [1.0] * 3 + [0.0] * 3

@@ -153,6 +153,17 @@ def test_what_was_found_is_taken_over_when_all_have_success(bench: Bench) -> Non
     assert bench.set["COMPASS_OFS3_X"] == 10.0 and "COMPASS_OFS2_X" not in bench.set
 
 
+def test_a_calibration_goes_on_from_its_state(bench: Bench) -> None:
+    service = bench.service
+    service.start(3.0, True, False, 2.0, True)
+    service._states[0] = State(SUCCESS, 2, ((1.0, 2.0, 3.0),), FIT, True)
+    held, before = service.snapshot(), dict(vars(service), _states=dict(service._states))
+    service.cancel(0.0)
+    service.start(4.0, False, True, 0.0, False)
+    service.restore(held)
+    assert vars(service) == before and hash(held)
+
+
 def test_a_calibration_is_cancelled_for_some_or_all(bench: Bench) -> None:
     service = bench.service
     service.start(0.0, False, False, 0.0, False)

@@ -7,12 +7,13 @@ import struct
 import zlib
 from collections.abc import Sequence
 from itertools import count
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
 from sitl.autopilot.mission.item import MissionItem
 from sitl.bridge.services import served_files
+from sitl.bridge.services.client_files import ClientFiles, State
 from sitl.bridge.services.ftp import MOST_WRITTEN, FtpService
 from sitl.bridge.services.mission_protocol import MissionService
 from sitl.bridge.services.parameter_protocol import ParameterService
@@ -303,3 +304,172 @@ def test_a_file_without_points_takes_all_of_them_away(bench: Bench) -> None:
         assert not served_files.write(bench.bridge, "@MISSION/rally.dat", head.pack(*bad)), bad
     assert not served_files.write(bench.bridge, "@MISSION/rally.dat", rally + bytes(38))
     assert service.items(MavMissionType.RALLY) == ()
+
+
+def answers(bench: Bench, *asked: object) -> list[tuple[tuple[int, ...], bytes]]:
+    """Heads and data of the answers to requests, without time passing."""
+    return [unpack(m) for each in asked for m in bench.ask(each, "FILE_TRANSFER_PROTOCOL")]
+
+
+def test_answers_name_what_they_answer(bench: Bench) -> None:
+    """The number after the request's, its session, how many bytes, its opcode, its offset; numbers end at 65535."""
+    assert answers(bench, request(0, sequence=65535, session=9)) == [((0, 9, ACK, 0, 0, 0, 0, 0), b"")]
+    assert answers(bench, request(CREATE, b"a", sequence=1)) == [((2, 0, ACK, 0, CREATE, 0, 0, 0), b"")]
+    (written,) = answers(bench, request(WRITE, b"hello", offset=300, sequence=2))
+    assert written == ((3, 0, ACK, 4, WRITE, 0, 0, 300), struct.pack("<I", 5))
+    (piece,) = answers(bench, request(READ, offset=10, size=0, sequence=3))
+    assert piece == ((4, 0, ACK, 239, READ, 0, 0, 10), bytes(239)), "as much as there is room for"
+    assert answers(bench, request(TERMINATE, offset=7, sequence=4)) == [((5, 0, ACK, 0, TERMINATE, 0, 0, 7), b"")]
+    (names,) = answers(bench, request(LIST, b"/", offset=2, sequence=5))
+    assert names == ((6, 0, ACK, 13, LIST, 0, 0, 2), b"D@SYS\0Fa\t305\0")
+    assert answers(bench, request(15, size=10, sequence=6, session=3)) == [((7, 3, NAK, 1, 15, 0, 0, 0), b"\x04")]
+
+
+@pytest.mark.parametrize(("size", "error"), [(239, 10), (240, 3)])
+def test_no_request_has_more_than_239_bytes(bench: Bench, size: int, error: int) -> None:
+    assert told(bench, OPEN, b"none", size=size) == error
+
+
+def test_a_packet_of_a_list_is_filled_up(bench: Bench) -> None:
+    store = bench.bridge.get(FtpService)._clients
+    store.make_folder("n")
+    for letter in "abc":
+        store.create("n/" + letter * 112)
+    (found,) = answers(bench, request(LIST, b"n"))
+    assert found[0][3] == 239 and found[1].count(b"\0") == 4
+    store.rename("n/" + "b" * 112, "n/" + "b" * 113)
+    (found,) = answers(bench, request(LIST, b"n", sequence=9))
+    assert found[0][3] == 123 and found[1].count(b"\0") == 3
+
+
+@pytest.mark.parametrize(
+    ("behind", "seconds", "answered"),
+    [(16, 0.0, 0), (17, 0.0, 1), (1, 0.0, 0), (1, 1.0, 0), (1, 1.0025, 1), (-1, 0.0, 1)],
+)
+@pytest.mark.parametrize("last", [1000, 3])
+def test_copies_of_what_opens_a_file_come_shortly_behind(
+    bench: Bench, behind: int, seconds: float, answered: int, last: int
+) -> None:
+    """At most a second late, and behind at most sixteen others."""
+    answers(bench, request(0, sequence=last))
+    bench.run(seconds)
+    sequence = (last - behind) & 0xFFFF
+    assert len(answers(bench, request(LIST, b"/", sequence=sequence))) == 1, "a list may be asked for again"
+    bench.run(2.0)
+    answers(bench, request(0, sequence=last))
+    bench.run(seconds)
+    bench.client.receive()
+    assert len(answers(bench, request(CREATE, b"a", sequence=sequence))) == answered
+
+
+def test_others_on_the_link_have_no_part_in_a_session(bench: Bench) -> None:
+    assert told(bench, CREATE, b"a") == 0
+    bench.client.mav.srcComponent = 191
+    assert told(bench, READ, b"", size=5) == 4
+    bench.client.mav.srcComponent = 190
+    assert told(bench, WRITE, b"x") == 0
+
+
+def test_what_is_reset_is_not_taken(bench: Bench) -> None:
+    bench.autopilot.items = (MissionItem(WAYPOINT),) * 2
+    mission = fetch(bench, b"@MISSION/mission.dat")
+    bench.autopilot.items = ()
+    for opcode, session, items in ((2, 5, 0), (TERMINATE, 0, 2)):
+        steps = (request(CREATE, b"@MISSION/mission.dat", sequence=next(SEQUENCES)),
+                 request(WRITE, mission, sequence=next(SEQUENCES)),
+                 request(TERMINATE, session=5, sequence=next(SEQUENCES)),
+                 request(opcode, session=session, sequence=next(SEQUENCES)),
+                 request(WRITE, b"x", sequence=next(SEQUENCES)))  # fmt: skip
+        assert [head[2] for head, _ in answers(bench, *steps)] == [ACK] * 4 + [NAK]
+        assert len(bench.autopilot.items) == items, "a session of another number was not ended"
+
+
+def burst(bench: Bench, seconds: float) -> list[tuple[int, int, int]]:
+    """Number, offset and completion of the packets that come."""
+    bench.run(seconds)
+    heads = [unpack(m)[0] for m in bench.client.receive("FILE_TRANSFER_PROTOCOL")]
+    return [(head[0], head[7], head[5]) for head in heads]
+
+
+def test_a_burst_is_ten_packets_in_ten_milliseconds(bench: Bench) -> None:
+    bench.bridge.logs = Logs([bytes(100 * 25)])
+    bench.run(0.0025)
+    answers(bench, request(OPEN, b"logs/00000001.BIN", sequence=1))
+    ask = request(BURST, size=100, sequence=65530)
+    for _ in range(2):  # one that is asked for again is no copy
+        answers(bench, ask)
+        assert burst(bench, 0.0025) == [((65531 + k) & 0xFFFF, 100 * k, 0) for k in range(10)]
+        assert burst(bench, 0.0075) == []
+        held = bench.bridge.snapshot()
+        rest = [((65531 + k) & 0xFFFF, 100 * k, k == 24) for k in range(10, 25)]
+        assert burst(bench, 0.0025) == rest[:10] and burst(bench, 0.0075) == []
+        assert burst(bench, 0.0025) == rest[10:] and burst(bench, 1.0) == []
+        bench.bridge.restore(held)
+        assert burst(bench, 0.02) == rest
+    answers(bench, request(BURST, sequence=30, offset=2499, size=0))
+    assert burst(bench, 0.02) == [(31, 2499, 1)]
+
+
+def test_a_burst_waits_for_a_client_that_does_not_read(bench: Bench) -> None:
+    bench.bridge.logs = Logs([bytes(239)])
+    answers(bench, request(OPEN, b"logs/00000001.BIN", sequence=1), request(BURST, sequence=2))
+    type(bench.bridge.channels[0].peer).congested = property(lambda self: True)  # type: ignore[assignment]
+    try:
+        assert burst(bench, 1.0) == []
+    finally:
+        del type(bench.bridge.channels[0].peer).congested
+    assert burst(bench, 0.01) == [(3, 0, 1)]
+
+
+@pytest.mark.parametrize(("data", "error"), [(b"\0a", 3), (b"a\0", 3), (b"a\0/", 3), (b"a", 3), (b"a\0b", 0)])
+def test_two_paths_are_needed_to_rename(bench: Bench, data: bytes, error: int) -> None:
+    assert told(bench, CREATE, b"a") == 0
+    assert told(bench, 13, data) == error
+
+
+def test_a_file_has_at_most_a_megabyte(bench: Bench) -> None:
+    assert told(bench, CREATE, b"a.bin\0rest") == 0
+    assert told(bench, WRITE, b"x", offset=(1 << 20) - 1) == 0
+    assert told(bench, WRITE, b"xy", offset=(1 << 20) - 1) == 1
+    assert told(bench, WRITE, b"y", offset=0) == 0
+    assert listed(bench, b"/")[-1] == "Fa.bin\t1048576"
+
+
+def test_a_long_log_is_summed_up_in_pieces(bench: Bench) -> None:
+    content = bytes(range(251)) * 10_000
+    bench.bridge.logs = Logs([content])
+    ((_, found),) = answers(bench, request(CRC, b"logs/00000001.BIN"))
+    assert found == struct.pack("<I", zlib.crc32(content, 0xFFFFFFFF) ^ 0xFFFFFFFF)
+
+
+@pytest.mark.parametrize(
+    ("change", "arguments", "error"),
+    [
+        ("create", ("x" * 200,), 0), ("create", ("x" * 201,), 1), ("create", ("a//b",), 1), ("create", ("./b",), 1),
+        ("create", ("a/",), 1), ("create", ("file",), 0), ("create", ("folder",), 1), ("create", ("none/b",), 10),
+        ("create", ("logsx",), 0), ("create", ("logs",), 9), ("create", ("file/b",), 10), ("create", ("a@",), 0),
+        ("make_folder", ("file",), 8), ("make_folder", ("folder",), 8), ("make_folder", ("folder/in/more",), 0),
+        ("remove", ("folder",), 1), ("remove", ("file",), 0), ("remove", ("@a",), 9), ("remove", ("none",), 10),
+        ("remove_folder", ("file",), 1), ("remove_folder", ("folder",), 1), ("remove_folder", ("folder/in",), 0),
+        ("remove_folder", ("logs",), 9), ("write", ("none", b""), 10), ("write", ("folder", b""), 10),
+        ("rename", ("file", "folder/in/b"), 0), ("rename", ("file", "folder"), 1), ("rename", ("file", "filer"), 0),
+        ("rename", ("folder", "file"), 1), ("rename", ("folder", "folder/b"), 1), ("rename", ("folder", "folders"), 1),
+        ("rename", ("folder", "fold"), 0), ("rename", ("file", "logs/a"), 9), ("rename", ("logs/a", "file"), 9),
+    ],
+)  # fmt: skip
+def test_what_can_be_done_with_files_and_folders(change: str, arguments: tuple[Any, ...], error: int) -> None:
+    store = ClientFiles()
+    store.restore(State(("folder", "folder/in", "folders"), (("file", b"1"), ("folder/a", b"22"))))
+    before = store.state()
+    assert getattr(store, change)(*arguments) == error
+    assert error == 0 or store.state() == before
+
+
+def test_a_folder_takes_along_what_is_in_it_and_a_file_the_place_of_another() -> None:
+    store = ClientFiles()
+    store.restore(State(("a", "a/b", "ab"), (("a/b/c", b"1"), ("ab/c", b"22"), ("aa", b"333"))))
+    assert store.rename("a", "d") == 0
+    assert store.state() == State(("ab", "d", "d/b"), (("ab/c", b"22"), ("aa", b"333"), ("d/b/c", b"1")))
+    assert store.rename("aa", "ab/c") == 0 and store.read("ab/c") == b"333" and store.read("aa") is None
+    assert store.listing("d/b") == ["Fc\t1"] and store.listing("d") == ["Db"] and store.listing("e") is None
+    assert store.listing("") == ["Dab", "Dd"]

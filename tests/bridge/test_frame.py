@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from pymavlink.generator.mavcrc import x25crc
 
 from sitl.bridge.dialect import KNOWN_IDS, UnknownMessageError, crc_mcrf4xx, message, message_by_id
 from sitl.bridge.frame import Splitter, encode_v1, encode_v2
@@ -144,6 +145,20 @@ def test_messages_newer_than_the_dialect_match_their_definition() -> None:
         "AVAILABLE_MODES", 17, 4, 8, 3
     )  # fmt: skip
     assert found.mode_name == "BRAKE" and kind.base_size == kind.size
+    kind = message("AVAILABLE_MODES_MONITOR")
+    (found,) = development.MAVLink(None).parse_buffer(encode_v2(kind, kind.payload(seq=7), 2, 1, 1))
+    assert (found.get_type(), found.seq, kind.size) == ("AVAILABLE_MODES_MONITOR", 7, 1)
+
+
+def test_a_message_that_no_dialect_here_has_is_that_of_its_definition() -> None:
+    """https://mavlink.io/en/messages/common.html#COMPONENT_METADATA; its seed is that of these fields."""
+    kind = message("COMPONENT_METADATA")
+    assert (kind.id, kind.size, kind.base_size, kind.fields) == (397, 108, 108, ("time_boot_ms", "file_crc", "uri"))
+    seed = x25crc()
+    seed.accumulate_str("COMPONENT_METADATA uint32_t time_boot_ms uint32_t file_crc char uri ")
+    seed.accumulate(b"\x64")
+    assert kind.crc_extra == bytes(((seed.crc & 0xFF) ^ (seed.crc >> 8),))
+    assert kind.payload(time_boot_ms=1, file_crc=2, uri=b"u") == b"\1\0\0\0\2\0\0\0u" + bytes(99)
 
 
 def test_extension_fields_that_are_newer_than_this_dialect_are_left_out():

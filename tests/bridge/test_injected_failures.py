@@ -16,7 +16,7 @@ from sitl.vehicle.faults import Failure
 
 ACCEPTED, DENIED, UNSUPPORTED = 0, 2, 3
 OK, OFF, STUCK, WRONG = 0, 1, 2, 4
-GYRO, GPS, BATTERY, MOTOR, RC = 0, 4, 100, 101, 104
+GYRO, GPS, FLOW, BATTERY, MOTOR, RC = 0, 4, 5, 100, 101, 104
 
 
 @pytest.fixture(scope="module")
@@ -136,3 +136,63 @@ def test_what_is_not_fitted_does_not_fail(client: Client, fault: str) -> None:
     with pytest.raises(OptionError):
         service.fail(Failure.of_text(fault))
     assert service.texts == []
+
+
+def test_without_leave_nothing_is_injected_and_what_is_not_fitted_is_unsupported(client: Client) -> None:
+    """SYS_FAILURE_EN; optical flow is none of this vehicle's."""
+    assert order(client, FLOW, OFF, 0) == UNSUPPORTED
+    assert order(client, 101.5, OFF, 0) == order(client, MOTOR, 6, 0) == UNSUPPORTED, "no such unit, no such type of it"
+    assert order(client, MOTOR, OFF, 1.5) == DENIED
+    client.params["SYS_FAILURE_EN"] = 0
+    assert order(client, GPS, OFF, 0) == UNSUPPORTED and client.params["SIM_GPS1_ENABLE"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("fault", "idle", "refused"),
+    [
+        ("motor:1/off", ("SIM_ENGINE",), True), ("motor/off", ("SIM_ENGINE",), True),
+        ("gps/off", ("SIM_ENGINE",), False), ("gps/off", ("SIM_GPS1",), False), ("gps:1/off", ("SIM_GPS1",), True),
+        ("motor:1/off", (), False),
+    ],
+)  # fmt: skip
+def test_what_does_nothing_to_this_physics_is_refused(
+    client: Client, monkeypatch: pytest.MonkeyPatch, fault: str, idle: Any, refused: bool
+) -> None:
+    """Of all instances some may do nothing."""
+    vehicle: Any = client.simulation.bridge.vehicle
+    monkeypatch.setattr(type(vehicle.plant), "idle_parameters", idle)
+    service = client.simulation.bridge.get(FaultService)
+    if not refused:
+        service.check(Failure.of_text(fault))
+        return
+    with pytest.raises(OptionError) as told:
+        service.check(Failure.of_text(fault))
+    said, _, there = str(told.value).partition("; there are ")
+    assert (
+        said.startswith(f"fault {fault.split('/')[0].split(':')[0]}: {idle[0]}") and "does nothing to physics" in said
+    )
+    assert "battery" in there.split(", ") and fault.split(":")[0].split("/")[0] not in there.split(", ")
+
+
+def test_faults_of_motors_act_while_it_is_armed(client: Client) -> None:
+    client.simulation.fail("motor:1/off")
+    client.delay(0.5)
+    assert told(client) == ["motor:1/off never acted: the vehicle was not armed"]
+
+
+def test_a_parameter_that_a_client_set_is_named(client: Client) -> None:
+    client.simulation.fail("battery=9")
+    client.params["SIM_BATT_VOLTAGE"] = 11.0
+    client.delay(0.2)
+    assert "a client set SIM_BATT_VOLTAGE meanwhile" in told(client)[0]
+
+
+def test_a_history_that_begins_later_knows_what_was_ordered_before(client: Client) -> None:
+    service = client.simulation.bridge.get(FaultService)
+    service.history = None
+    client.simulation.fail("gps/off")
+    client.delay(0.2)
+    history = service.keep_history()
+    assert [acted.title for acted in history.faults] == ["gps/off"] and service.keep_history() is history
+    client.delay(0.2)
+    assert "acted from" in told(client)[0]

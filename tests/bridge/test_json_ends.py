@@ -249,3 +249,63 @@ def test_who_sends_is_named_by_its_address(peer, said):
     end = PhysicsEnd()
     assert end.receive(frame(0), peer, 0.0).note == f"autopilot at {said}"
     assert end.receive(frame(1), THERE, 100.0).note == f"autopilot at {named(THERE)}, before at {said}"
+
+
+@pytest.mark.parametrize(("later", "asked"), [(0.499, Asked.NOTHING), (0.5, Asked.REPEAT)])
+def test_a_repeat_has_crossed_our_answer_within_half_a_second(later, asked):
+    end = PhysicsEnd()
+    end.receive(frame(7), HERE, 100.0)
+    end.answer([b"line"], 100.0)
+    assert end.receive(frame(7), HERE, 100.0 + later).asked is asked
+    if asked is Asked.REPEAT:
+        end.repeat(100.75)
+        assert end.receive(frame(7), HERE, 101.249).asked is Asked.NOTHING, "it was answered again"
+        assert end.receive(frame(7), HERE, 101.25).asked is Asked.REPEAT
+
+
+@pytest.mark.parametrize(("later", "asked"), [(0.249, Asked.NOTHING), (0.25, Asked.STEP)])
+def test_an_autopilot_is_still_there_for_a_quarter_of_a_second(later, asked):
+    end = PhysicsEnd()
+    end.receive(frame(7), HERE, 100.0)
+    end.answer([b"line"], 100.0)
+    assert end.receive(frame(8), THERE, 100.0 + later).asked is asked
+    assert end.refused == (asked is Asked.NOTHING) and end.peer == (HERE if asked is Asked.NOTHING else THERE)
+
+
+@pytest.mark.parametrize(("before", "asked"), [((1 << 31) - 1, Asked.RESTART), (1 << 31, Asked.STEP)])
+def test_a_count_that_is_lower_by_half_of_all_has_gone_over_its_end(before, asked):
+    end = PhysicsEnd()
+    end.receive(frame(before), HERE, 0.0)
+    end.answer([b"line"], 0.0)
+    request = end.receive(frame(0), HERE, 1.0)
+    assert request.asked is asked
+    assert request.note == ("the autopilot has been started anew" if asked is Asked.RESTART else "")
+
+
+def test_frames_that_were_answered_elsewhere():
+    end = PhysicsEnd()
+    end.receive(frame(0), HERE, 0.0)
+    end.answer([b"line"], 0.0)
+    end.go_on(5, 6, [b"a", b"b", b"c"], 10.0)
+    assert (end.count, end.ahead) == (6, 1)
+    assert end.receive(frame(6), HERE, 10.4).asked is Asked.NOTHING
+    assert end.receive(frame(8), THERE, 10.5).asked is Asked.NOTHING, "the first is still there"
+    assert end.receive(frame(6), HERE, 11.0).asked is Asked.REPEAT and end.repeat(11.0) == b"b"
+    assert end.receive(frame(7), HERE, 11.0).asked is Asked.AHEAD and end.ahead == 0
+    assert end.receive(frame(8), HERE, 11.0).asked is Asked.STEP
+
+
+def test_a_frame_of_which_no_line_is_known_is_stepped():
+    end = PhysicsEnd()
+    end.receive(frame(3), HERE, 0.0)
+    assert end.ahead == 0
+    assert end.receive(frame(3), HERE, 1.0).asked is Asked.STEP, "it was asked for, and not answered"
+
+
+def test_of_sixteen_kinds_each_is_told_once():
+    end = PhysicsEnd()
+    end.receive(frame(0), HERE, 0.0)
+    for port in range(17):
+        notes = [end.receive(frame(0), ("127.0.0.1", port), 0.01).note for _ in range(2)]
+        assert ["second autopilot" in note for note in notes] == [True, port == 16]
+    assert end.refused == 34

@@ -91,6 +91,7 @@ def test_battery_and_receiver_are_optional():
         ({"position": [0, 0, "low"]}, "not a number"),
         ({"velocity": [1e9, 0, 0]}, "out of all bounds"),
         ({"attitude": None}, "attitude"),
+        ({"timestamp": 1.1e9}, "out of all bounds"),
         ({"quaternion": [0, 0, 0, 0]}, "length 0"),
         ({"quaternion": [1, 0, 0]}, "not 4 numbers"),
     ],
@@ -122,3 +123,8 @@ def test_what_is_known_as_a_frame_at_a_glance_is_one(datagram):
         assert not is_frame(datagram)
     else:
         assert is_frame(datagram)
+
+
+def test_a_line_without_attitude_is_no_motion():
+    with pytest.raises(MotionError, match="neither quaternion nor attitude is there"):
+        decode_motion(json.dumps({key: value for key, value in GOOD.items() if key != "attitude"}).encode())

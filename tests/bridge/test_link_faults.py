@@ -9,7 +9,9 @@ from typing import Any
 
 import pytest
 
+from sitl.bridge.dialect import message
 from sitl.bridge.faulty_links import FaultyLinks
+from sitl.bridge.frame import encode_v1, encode_v2
 from sitl.bridge.links import InProcessLink, LinkFaults
 from sitl.bridge.links.faulty_direction import FaultyDirection, cut, is_of_clock
 from sitl.client.endpoint import Endpoint
@@ -187,3 +189,99 @@ def test_words_of_a_command_line() -> None:
 def test_words_that_cannot_be_understood(name: str, word: str) -> None:
     with pytest.raises(OptionError, match=f"--link-{name} '{word}' is not"):
         LinkFaults.of_texts({name: [word]})
+
+
+# ---------------------------------------------------------------- with numbers that are no chance
+
+
+def way(monkeypatch: pytest.MonkeyPatch, faults: LinkFaults, *numbers: float) -> FaultyDirection:
+    """One that draws these numbers, 0 .. 1."""
+    made, drawn = FaultyDirection(faults), iter(numbers)
+    monkeypatch.setattr("sitl.bridge.links.faulty_direction.rng.uniform", lambda generator: next(drawn))
+    return made
+
+
+def arrivals(made: FaultyDirection) -> list[tuple[int, int]]:
+    """Times [us] and numbers of the frames that are under way."""
+    out = []
+    while made.due_us != NEVER:
+        due = made.due_us
+        out += [(due, number(frame)) for frame in made.arrived(due)]
+    return out
+
+
+@pytest.mark.parametrize(
+    ("faults", "numbers", "times"),
+    [
+        ({"loss": 0.25}, (0.25,), [1_000_000]), ({"loss": 0.25}, (0.2,), []),
+        ({"delay": (0.1, 0.3)}, (0.25,), [1_150_000]), ({"delay": (0.1, 0.3)}, (0.0,), [1_100_000]),
+        ({"delay": 0.1, "jitter": 0.04}, (0.75,), [1_120_000]), ({"delay": 0.1, "jitter": 0.04}, (0.0,), [1_060_000]),
+        ({"delay": 0.1, "jitter": 0.4}, (0.0,), [1_000_000]),
+        ({"reordering": 0.5}, (0.25, 0.25), [1_050_000]), ({"reordering": 0.5}, (0.5,), [1_000_000]),
+        ({"duplicates": 0.5, "delay": (0.0, 1.0)}, (0.25, 0.5, 0.125), [1_125_000, 1_500_000]),
+        ({"duplicates": 0.5, "jitter": 0.1}, (0.25, 0.75, 0.0), [1_000_000, 1_050_000]),
+        ({"bandwidth": 7000.0}, (), [1_002_143]), ({"bandwidth": 7000.0, "delay": 0.5}, (), [1_502_143]),
+    ],
+)  # fmt: skip
+def test_when_a_frame_comes(monkeypatch: pytest.MonkeyPatch, faults: Any, numbers: Any, times: list[int]) -> None:
+    """One of 15 bytes, sent a second after the start."""
+    made = way(monkeypatch, LinkFaults(**faults), *numbers)
+    now = made.carry(FRAMES[:1], 1_000_000)
+    assert sorted([1_000_000] * len(now) + [due for due, _ in arrivals(made)]) == times
+
+
+def test_a_frame_that_is_overtaken_holds_up_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = way(monkeypatch, LinkFaults(reordering=0.5, delay=(0.0, 1.0)), 0.5, 0.9, 0.2, 0.1, 0.5, 0.3, 0.9)
+    made.carry(FRAMES[:2], 0)
+    made.carry(FRAMES[2:3], 1000)
+    assert arrivals(made) == [(300_000, 1), (500_000, 0), (500_000, 2)]
+
+
+@pytest.mark.parametrize(("frames", "now_us", "full"), [(2, 50_000, False), (2, 49_999, True), (1, 0, False)])
+def test_telemetry_waits_while_a_quarter_of_a_second_of_frames_does(frames: int, now_us: int, full: bool) -> None:
+    made = FaultyDirection(LinkFaults(bandwidth=100.0))  # a frame in 150 ms
+    made.carry(FRAMES[:frames], 0)
+    made.arrived(now_us)
+    assert made.is_full == full
+
+
+@pytest.mark.parametrize(("now_us", "lost"), [(50_000, 0), (49_999, 1)])
+def test_frames_wait_for_four_seconds(now_us: int, lost: int) -> None:
+    made = FaultyDirection(LinkFaults(bandwidth=100.0))
+    made.carry(FRAMES[:27], 0)
+    made.carry(FRAMES[27:28], now_us)
+    while made.due_us < 4_100_000:
+        made.arrived(made.due_us)
+    assert len(arrivals(made)) == 1 - lost
+
+
+def test_bits_are_turned_over_as_far_from_each_other_as_chance_has_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = way(monkeypatch, LinkFaults(corruption=0.5), 0.75, 0.0, 0.9375, 0.9999, 1.0 - 2.0**-53, 1.0 - 2.0**-53)
+    (frame,) = made.carry([bytes(3)], 0)
+    assert frame == bytes([0b1100, 0b1, 0b1000000])
+    assert made.carry([bytes(3)], 0) == [bytes(3)]
+
+
+def test_what_is_under_way_or_begun_is_not_idle() -> None:
+    made = FaultyDirection(LinkFaults())
+    assert made.is_idle and made.due_us == NEVER
+    assert made.carry_bytes(FRAMES[0][:5], 0) == [] and not made.is_idle
+    assert made.carry_bytes(FRAMES[0][5:], 0) == [FRAMES[0]] and made.is_idle
+    made.faults = LinkFaults(delay=0.1)
+    made.carry(FRAMES[:1], 0)
+    made.faults = LinkFaults()
+    assert not made.is_idle and made.due_us == 100_000
+    assert made.arrived(99_999) == [] and made.arrived(100_000) == FRAMES[:1] and made.is_idle
+
+
+@pytest.mark.parametrize("encode", [encode_v1, encode_v2])
+def test_clocks_are_pushed_by_two_commands_in_both_versions(encode: Any) -> None:
+    for name in ("COMMAND_INT", "COMMAND_ACK"):
+        kind = message(name)
+        found = [n for n in (31009, 31010, 31011, 31012) if is_of_clock(encode(kind, kind.payload(command=n), 0, 1, 1))]
+        assert found == [31010, 31011]
+        frame = encode(kind, kind.payload(command=31010), 0, 1, 1)
+        at = frame.index(b"\x22\x79")
+        assert is_of_clock(frame[: at + 2]) and not is_of_clock(frame[: at + 1])
+    kind = message("COMMAND_LONG")
+    assert not is_of_clock(encode(kind, kind.payload(command=31010), 0, 1, 1))

@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
-from sitl.bridge.links import udp
+from sitl.bridge.links import open_link, tcp, udp
 from sitl.bridge.links.faults import LinkFaults
 from sitl.bridge.links.inprocess import InProcessLink, LogLink
-from sitl.bridge.links.link import Link, Peer, receive_all
+from sitl.bridge.links.link import Link, LinkAddressError, Peer, receive_all
+from sitl.bridge.links.tcp import _TcpPeer
 from sitl.bridge.links.udp import DATAGRAM_BYTES, _UdpPeer
 from sitl.errors import OptionError
 
@@ -174,6 +175,7 @@ class Socket:
         self.sent.append((data, address))
 
     def recvfrom(self, size: int) -> Any:
+        assert size == 65535
         if not self.incoming:
             raise BlockingIOError
         found = self.incoming.pop(0)
@@ -250,6 +252,91 @@ def test_a_flood_does_not_keep_the_vehicle_from_flying() -> None:
     link = link_of(*[(b"x", ("10.0.0.1", 1))] * 300)
     link._readable()
     assert len(link.peers[0].take()) == 256 and len(link._socket.incoming) == 44
+
+
+# ---------------------------------------------------------------- connections
+
+
+class Connection:
+    """As much of a TCP socket as a peer needs; it takes ``room`` bytes."""
+
+    def __init__(self, room: float = 0.0) -> None:
+        self.room, self.sent, self.incoming = room, list[int](), list[Any]()
+
+    def send(self, data: bytes) -> int:
+        if self.room <= 0:
+            raise BlockingIOError
+        size = int(min(len(data), self.room))
+        self.room -= size
+        self.sent.append(size)
+        return size
+
+    def recv(self, size: int) -> bytes:
+        assert size == 65536
+        found = self.incoming.pop(0)
+        if isinstance(found, Exception):
+            raise found
+        return found  # type: ignore[no-any-return]
+
+
+def connected(room: float = 0.0) -> tuple[Any, Any, Any]:
+    """A peer, its socket and its link."""
+    sock, gone = Connection(room), list[str]()
+    link: Any = SimpleNamespace(forget=lambda peer, sock: gone.append(peer.why_closed), gone=gone)
+    link.deliver = lambda peer, data: peer.deliver(data)
+    return _TcpPeer("t", sock, link), sock, link  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("size", "congested", "dropped"),
+    [
+        (1, False, False), (262_144, False, False), (262_145, True, False), (4_194_304, True, False),
+        (4_194_305, True, True),
+    ],
+)  # fmt: skip
+def test_a_client_that_does_not_read_is_spared_and_then_dropped(size: int, congested: bool, dropped: bool) -> None:
+    peer, sock, link = connected()
+    peer.write(b"a")
+    peer.write(bytes(size - 1))
+    peer.flush()
+    assert (peer.congested, peer.closed, peer.outbox) == (congested, dropped, [])
+    text = "client does not read: 4194305 bytes unsent, at most 4194304 are kept"
+    assert link.gone == [text] * dropped
+    sock.room = 1e9
+    peer.flush()
+    assert sock.sent == ([] if dropped else [65536] * (size // 65536) + [size % 65536] * (size % 65536 > 0))
+
+
+def test_what_a_socket_takes_in_part_goes_on_later() -> None:
+    peer, sock, _ = connected(room=70_000)
+    peer.write(bytes(100_000))
+    peer.flush()
+    sock.room = 1e9
+    peer.flush()
+    assert sock.sent == [65536, 4464, 30_000]
+
+
+HTTP = "client speaks HTTP, not MAVLink"
+
+
+@pytest.mark.parametrize(
+    ("incoming", "heard", "why"),
+    [
+        ([b"abc"], b"abc", None), ([BlockingIOError()], b"", None), ([b""], b"", "client closed the connection"),
+        ([OSError(104, "reset")], b"", "connection lost: reset"), ([OSError("odd")], b"", "connection lost: odd"),
+        ([b"GET / HT"], b"", HTTP), ([b"GE", b"T /"], b"GE", HTTP), ([b"OPTIONS / HTTP"], b"", HTTP),
+        ([b"GETS", b"GET /"], b"GETSGET /", None),
+    ],
+)  # fmt: skip
+def test_what_comes_over_a_connection(incoming: Any, heard: bytes, why: str | None) -> None:
+    peer, sock, link = connected()
+    sock.incoming = list(incoming)
+    for _ in incoming:
+        peer.readable()
+    assert peer.take() == heard and link.gone == ([] if why is None else [why]) and peer.closed == bool(why)
+    peer.drop("again")
+    peer.drop("and again")
+    assert link.gone == [why or "again"], "told once"
 
 
 # ---------------------------------------------------------------- faults
@@ -349,3 +436,56 @@ def test_words_that_are_no_value_are_named_with_their_option(texts: Any, error: 
     with pytest.raises(OptionError) as told:
         LinkFaults.of_texts(texts)
     assert str(told.value) == error
+
+
+# ---------------------------------------------------------------- how many
+
+
+def test_sixty_four_addresses_are_peers() -> None:
+    link = link_of(*[(b"x", ("10.0.0.1", port)) for port in range(1, 66)])
+    link._readable()
+    assert [peer.address[1] for peer in link.peers] == list(range(2, 66))
+
+
+class Listener(Connection):
+    """A socket that listens; whoever wants to come is let in at once."""
+
+    def accept(self) -> Any:
+        if not self.incoming:
+            raise BlockingIOError
+        made = Connection()
+        made.setblocking = made.setsockopt = made.close = lambda *how: None  # type: ignore[attr-defined]
+        return made, ("10.0.0.1", self.incoming.pop(0))
+
+
+def test_sixty_four_connections_are_peers() -> None:
+    link = tcp.TcpServerLink(0)
+    link._socket.close()
+    link._socket = Listener()  # type: ignore[assignment]
+    link._socket.incoming = list(range(1, 66))  # type: ignore[attr-defined]
+    for _ in range(65):
+        link._accept()
+    assert [peer.name.rpartition(":")[2] for peer in link.peers] == [str(port) for port in range(2, 66)]
+
+
+def test_who_does_not_answer_is_given_five_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+
+    def connect(address: Any, seconds: float) -> None:
+        asked.append((address, seconds))
+        raise OSError(111, "Connection refused")
+
+    monkeypatch.setattr(tcp.socket, "create_connection", connect)
+    with pytest.raises(LinkAddressError, match=r"link tcpclient:10\.0\.0\.1:5760 cannot be opened: Connection refused"):
+        tcp.TcpClientLink("10.0.0.1", 5760)
+    assert asked == [(("10.0.0.1", 5760), 5.0)]
+
+
+def test_a_link_that_sends_has_its_peer_from_the_start() -> None:
+    link = open_link("udp:127.0.0.1:14777")
+    assert [peer.name for peer in link.peers] == ["udpout:127.0.0.1:14777 127.0.0.1:14777"]
+    assert isinstance(link, udp.UdpOutLink) and link.local_address[0] == "127.0.0.1"
+    link.close()
+    other = udp.UdpOutLink("10.255.255.1", 14777)
+    assert other.local_address[0] == "0.0.0.0"
+    other.close()

@@ -448,3 +448,145 @@ def test_degrees_are_on_the_globe_up_to_the_poles(x: float, y: float, result: in
     assert found == result
     if result == 0:
         assert (item.x, item.y) == (round(1e7 * x), round(1e7 * y))
+
+
+def texts(answers: list[Any]) -> list[tuple[int, str]]:
+    return [(m.severity, m.text) for m in answers if m.get_type() == "STATUSTEXT"]
+
+
+def kinds(answers: list[Any]) -> list[str]:
+    return [m.get_type() for m in answers if m.get_type().startswith("MISSION")]
+
+
+def later(bench: Bench, seconds: float) -> list[Any]:
+    """What comes while time passes."""
+    bench.run(seconds)
+    return bench.client.receive("MISSION_REQUEST", "MISSION_ACK", "STATUSTEXT")
+
+
+def test_an_item_is_asked_for_each_second_for_8_seconds(bench: Bench) -> None:
+    bench.run(3.0)
+    bench.ask(count(3))
+    assert later(bench, 0.9975) == []
+    assert kinds(later(bench, 0.0025)) == ["MISSION_REQUEST"]
+    bench.ask(item_int(0, SQUARE[0]))
+    assert kinds(later(bench, 7.9975)) == 7 * ["MISSION_REQUEST"]
+    answers = later(bench, 0.0025)
+    assert kinds(answers) == ["MISSION_ACK"] and texts(answers) == [(4, "Mission upload timeout")]
+
+
+@pytest.mark.parametrize(("seconds", "asks"), [(0.1975, False), (0.2, True)])
+def test_an_item_that_is_there_is_answered_after_a_fifth_of_a_second(bench: Bench, seconds: float, asks: bool) -> None:
+    bench.ask(count(3))
+    bench.ask(item_int(0, SQUARE[0]))
+    bench.run(seconds)
+    assert kinds(bench.ask(item_int(0, SQUARE[0]))) == asks * ["MISSION_REQUEST"]
+
+
+@pytest.mark.parametrize(("seconds", "is_copy"), [(1.9975, True), (2.0, False)])
+def test_copies_come_within_two_seconds(bench: Bench, seconds: float, is_copy: bool) -> None:
+    bench.ask(count(3))
+    bench.ask(item_int(0, SQUARE[0]))
+    later(bench, seconds)
+    assert [m.seq for m in bench.ask(count(3), "MISSION_REQUEST")] == ([] if is_copy else [0])
+    for seq in range(is_copy, 3):
+        (answer,) = bench.ask(item_int(seq, SQUARE[seq]), "MISSION_REQUEST", "MISSION_ACK")
+    assert answer.type == ACCEPTED
+    later(bench, seconds)
+    for seq, result in ((0, ACCEPTED if is_copy else ERROR), (2, ACCEPTED), (3, ERROR)):
+        (ack,) = bench.ask(item_int(seq, SQUARE[seq]), "MISSION_ACK")
+        assert ack.type == result, seq
+
+
+def test_a_count_that_comes_twice_at_once_is_asked_for_twice(bench: Bench) -> None:
+    assert [len(bench.ask(count(n), "MISSION_REQUEST")) for n in (3, 3, 4, 3)] == [1, 1, 1, 1]
+
+
+@pytest.mark.parametrize(
+    ("system", "result", "ends"), [(255, ERROR, True), (255, ACCEPTED, False), (250, ERROR, False)]
+)
+def test_who_uploads_can_give_up(bench: Bench, system: int, result: int, ends: bool) -> None:
+    other = bench.connect(system=250)
+    bench.ask(count(3))
+    client = bench.client if system == 255 else other
+    client.send(mavlink.MAVLink_mission_ack_message(1, 1, result))
+    bench.bridge.receive()
+    assert kinds(later(bench, 1.0)) == (not ends) * ["MISSION_REQUEST"]
+    other.receive()
+    other.send(mavlink.MAVLink_mission_request_list_message(1, 1))
+    bench.bridge.receive()
+    assert kinds(other.receive()) == ["MISSION_COUNT" if ends else "MISSION_ACK"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"), [(0, [(6, "Flight plan received")]), (1, [(7, "Fence Indexed OK")]), (2, [])]
+)
+def test_a_list_that_was_taken_is_said(bench: Bench, kind: int, said: Any) -> None:
+    """Of an empty one, only a mission's."""
+    bench.ask(count(1, kind))
+    item = (SQUARE[0], MissionItem(5003, 3, p1=50.0, x=HOME[0], y=HOME[1]), MissionItem(5100, 3, x=HOME[0], y=HOME[1]))
+    assert texts(bench.ask(item_int(0, item[kind], kind=kind))) == said
+    assert texts(bench.ask(count(0, kind))) == (said if kind == 0 else [])
+
+
+def test_old_messages_are_named(bench: Bench) -> None:
+    """MISSION_ITEM once in an upload, MISSION_REQUEST once until the next upload."""
+    use = [(4, "got MISSION_ITEM; GCS should send MISSION_ITEM_INT")]
+    assert texts(bench.ask(item_float(0, SQUARE[0]))) == [], "no upload"
+    bench.ask(count(3))
+    assert texts(bench.ask(item_float(0, SQUARE[0], current=2))) == []
+    assert [texts(bench.ask(item_float(k, SQUARE[k]))) for k in (0, 1)] == [use, []]
+    ask = mavlink.MAVLink_mission_request_message(1, 1, 0)
+    old = [(4, "got MISSION_REQUEST; use MISSION_REQUEST_INT!")]
+    assert [texts(bench.ask(ask)) for _ in range(3)] == [old, [], []]
+    bench.ask(count(4))
+    assert [texts(bench.ask(ask)) for _ in range(2)] == [old, []]
+
+
+@pytest.mark.parametrize(
+    ("kind", "result", "fences"), [(0, ERROR, 1), (255, ERROR, 1), (1, ACCEPTED, 0), (2, ACCEPTED, 1)]
+)
+def test_a_mission_that_is_flown_is_not_cleared(bench: Bench, kind: int, result: int, fences: int) -> None:
+    """Nor is anything else with it."""
+    bench.ask(count(1, 1))
+    bench.ask(item_int(0, MissionItem(5003, 3, p1=50.0, x=HOME[0], y=HOME[1]), kind=1))
+    bench.autopilot.clear_mission = lambda: False  # type: ignore[method-assign]
+    (ack,) = bench.ask(mavlink.MAVLink_mission_clear_all_message(1, 1, kind), "MISSION_ACK")
+    assert (ack.type, ack.mission_type) == (result, kind)
+    assert bench.ask(mavlink.MAVLink_mission_request_list_message(1, 1, 1), "MISSION_COUNT")[0].count == fences
+
+
+def test_an_item_is_current_where_the_number_of_its_command_is(bench: Bench) -> None:
+    bench.autopilot.items = tuple(SQUARE)
+    bench.ask(count(1, 1))
+    bench.ask(item_int(0, MissionItem(5003, 3, p1=50.0, x=HOME[0], y=HOME[1]), kind=1))
+    nav = bench.vehicle.v.autopilot.modes.nav
+    for current, seq, kind, told in ((16, 0, 0, 1), (16, 1, 0, 0), (22, 1, 0, 1), (5003, 0, 1, 0)):
+        nav.mission_current = current
+        (item,) = bench.ask(mavlink.MAVLink_mission_request_int_message(1, 1, seq, kind), "MISSION_ITEM_INT")
+        assert item.current == told
+
+
+def test_lists_can_be_taken_at_once(bench: Bench) -> None:
+    kind = dialect.message("MISSION_ITEM_INT")
+    good = kind.decode(kind.payload(command=16, frame=3, x=HOME[0], y=HOME[1], z=5.0))
+    bad = kind.decode(kind.payload(command=5003, frame=3))
+    service = bench.bridge.get(MissionService)
+    bench.client.receive()
+    for rows, ok in (([good, bad], False), (725 * [good], False), (724 * [good], True)):
+        assert service.take(0, rows) == ok
+        assert len(bench.autopilot.items) == 724 * ok
+        assert texts(bench.ask(count(0, 99))) == ok * [(6, "Flight plan received")]
+    bench.ask(count(3))
+    assert not service.take(0, [good]) and len(bench.autopilot.items) == 724, "an upload is under way"
+
+
+def test_lists_are_kept_and_counted(bench: Bench) -> None:
+    corners = ((0, 0), (0, 9000), (9000, 0))
+    fence = tuple(MissionItem(5001, 3, p1=3.0, x=HOME[0] + x, y=HOME[1] + y) for x, y in corners)
+    rally = 2 * (MissionItem(5100, 3, x=HOME[0], y=HOME[1]),)
+    service, values = bench.bridge.get(MissionService), bench.vehicle.parameters
+    service.keep(fence, rally)
+    assert (values["FENCE_TOTAL"], values["RALLY_TOTAL"]) == (0.0, 0.0) and service.lists == (fence, rally)
+    service.keep(fence, rally, counted=True)
+    assert (values["FENCE_TOTAL"], values["RALLY_TOTAL"]) == (5.0, 2.0)

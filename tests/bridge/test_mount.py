@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.autopilot.aux_switch import HIGH, LOW
 from sitl.autopilot.mission.item import MissionItem
@@ -166,7 +167,12 @@ def test_who_has_control() -> None:
     b = bench()
     (m,) = b.telemetry("GIMBAL_MANAGER_INFORMATION")
     assert (m.cap_flags, m.gimbal_device_id, m.pitch_max) == (206847, 1, pytest.approx(math.radians(20.0)))
-    assert b.command(GIVE, 7, 8) == ACCEPTED
+    (m,) = b.telemetry("GIMBAL_MANAGER_STATUS")
+    assert (m.primary_control_sysid, m.primary_control_compid) == (0, 0), "nobody yet"
+    for system, component, result in ((256, 0, FAILED), (-1, 0, FAILED), (0, 256, FAILED), (255, 0, ACCEPTED)):
+        assert b.command(GIVE, system, component) == result
+    (m,) = b.ask(mavlink.MAVLink_command_long_message(1, 1, GIVE, 0, 7, 8, 0, 0, 0, 0, 0), "GIMBAL_MANAGER_STATUS")
+    assert (m.primary_control_sysid, m.primary_control_compid) == (7, 8), "told at once"
     assert b.command(GIVE, -2, -2) == ACCEPTED
     (m,) = b.telemetry("GIMBAL_MANAGER_STATUS")
     assert (m.primary_control_sysid, m.primary_control_compid, m.flags) == (255, 190, LEVEL)
@@ -190,3 +196,154 @@ def test_a_gimbal_that_nobody_has_told_anything_looks_straight_ahead(mode: int) 
     if mode == 2:
         assert euler == pytest.approx((0.0, 0.0, 0.0), abs=1e-6) and m.flags == LEVEL | FROM_NOSE
     assert all(map(math.isfinite, euler))
+
+
+def test_what_it_tells_has_the_time_since_boot() -> None:
+    b = bench()
+    b.run(12.5)
+    b.client.receive()
+    for name in ("DEVICE_ATTITUDE_STATUS", "MANAGER_INFORMATION", "MANAGER_STATUS"):
+        (m,) = b.telemetry(f"GIMBAL_{name}")
+        assert (m.time_boot_ms, m.gimbal_device_id) == (12_500, 1)
+
+
+def test_it_is_turned_fifty_times_a_second() -> None:
+    b = bench()
+    b.run(0.1)
+    b.autopilot.calls.clear()
+    b.run(1.0)
+    assert sum(call[:2] == ("set_servo", 9) for call in b.autopilot.calls) == 50
+
+
+@pytest.mark.parametrize(
+    ("item", "rpy"),
+    [
+        (MissionItem(ROI, MavFrame.GLOBAL_RELATIVE_ALT, x=HOME[0] + 1797, y=HOME[1], z=0.0), (0.0, -56.3, 0.0)),
+        (MissionItem(ROI, MavFrame.GLOBAL_RELATIVE_ALT), (0.0, -35.0, 0.0)),
+    ],
+)
+def test_a_region_at_height_zero_is_one_and_one_without_a_location_is_none(item: MissionItem, rpy: Any) -> None:
+    """Ahead is the middle of each axis, where the sticks would be."""
+    b = bench()
+    b.vehicle.v.autopilot.estimate.pos = Vec3(0.0, 0.0, -30.0)
+    b.bridge.carry_out(item)
+    b.run(0.1)
+    assert told(b)[1] == pytest.approx(rpy, abs=0.1)
+
+
+def test_the_nose_is_freed_for_regions_of_interest_alone_and_by_a_gimbal_that_turns() -> None:
+    for yaw, item, freed in ((6.0, MissionItem(NO_ROI), [None]), (6.0, MissionItem(CONTROL, p1=-30.0), []),
+                             (0.0, MissionItem(NO_ROI), [])):  # fmt: skip
+        b = bench(SERVO9_FUNCTION=yaw)
+        b.bridge.carry_out(item)
+        assert [call[1] for call in b.autopilot.calls if call[0] == "set_roi"] == freed
+
+
+def test_home_is_looked_at_from_wherever_it_is() -> None:
+    b = bench()
+    estimate, home = b.vehicle.v.autopilot.estimate, b.vehicle.v.autopilot.home
+    home.pos, estimate.pos = Vec3(10.0, 20.0, -2.0), Vec3(10.0, 50.0, -32.0)
+    estimate.euler = Euler(0.0, 0.0, math.radians(-60.0))
+    assert b.command(CONTROL, 0, 0, 0, 0, 0, 0, 6) == ACCEPTED
+    b.run(0.1)
+    m, euler = told(b)
+    assert euler == pytest.approx((0.0, -45.0, -30.0), abs=0.1) and m.flags == LEVEL | FROM_NOSE | YAW_LOCK
+
+
+@pytest.mark.parametrize("numbers", [(NAN, 0.0, 0.0), (0.0, NAN, 0.0), (0.0, 0.0, math.inf)])
+def test_angles_of_a_mission_that_are_none_leave_it_as_it_is(numbers: Any) -> None:
+    b = bench()
+    assert b.command(CONTROL, -30, 0, 45, 0, 0, 0, 2) == ACCEPTED
+    b.bridge.carry_out(MissionItem(CONTROL, p1=numbers[0], p2=numbers[1], p3=numbers[2]))
+    assert pulses(b)[:2] == (1536, 1600)[::-1]
+
+
+@pytest.mark.parametrize(
+    ("values", "result"),
+    [
+        ((NAN, NAN, NAN, 5.0), FAILED), ((NAN, NAN, 5.0, NAN), FAILED), ((10.0, NAN, 5.0, NAN), FAILED),
+        ((0, 0, 0, 0, -1), FAILED), ((0, 0, 0, 0, 2.0**31), FAILED), ((0, 0, 0, 0, 0, 0, 1), ACCEPTED),
+    ],
+)  # fmt: skip
+def test_what_the_gimbal_manager_takes(values: Any, result: int) -> None:
+    assert bench().command(PITCH_YAW, *values) == result
+
+
+def test_rates_from_the_nose_and_angles_of_the_old_command_are_no_lock() -> None:
+    b = bench()
+    b.vehicle.v.autopilot.estimate.euler = Euler(0.0, 0.0, math.radians(80.0))
+    assert b.command(PITCH_YAW, -20, 30, 0, 0, YAW_LOCK) == ACCEPTED
+    b.run(0.1)
+    assert b.command(PITCH_YAW, NAN, NAN, 0, -10) == ACCEPTED
+    b.run(1.0)
+    assert told(b)[1].yaw == pytest.approx(-60.0, abs=0.3), "it goes on from where it was"
+    assert told(b)[0].flags == LEVEL | FROM_NOSE
+    assert b.command(PITCH_YAW, -20, 30, 0, 0, YAW_LOCK) == ACCEPTED
+    assert b.command(CONTROL, -20, 0, 30, 0, 0, 0, 2) == ACCEPTED
+    b.run(0.1)
+    assert told(b)[1].yaw == pytest.approx(30.0, abs=0.01) and told(b)[0].flags == LEVEL | FROM_NOSE
+
+
+def test_an_axis_without_an_output_stays_and_one_without_a_range_is_in_its_middle() -> None:
+    b = bench(SERVO11_FUNCTION=0.0, SERVO9_FUNCTION=0.0, MNT1_PITCH_MIN=-10.0, MNT1_PITCH_MAX=-10.0)
+    b.vehicle.v.autopilot.estimate.euler = Euler(0.0, 0.0, 1.0)
+    assert b.command(CONTROL, -30, 20, 45, 0, 0, 0, 2) == ACCEPTED
+    assert pulses(b) == (0, 1500, 0)
+    assert told(b)[1] == pytest.approx((0.0, -10.0, 0.0), abs=1e-4)
+
+
+@pytest.mark.parametrize(("lean", "pitch"), [(0.0, -30.0), (10.0, -30.0), (10.0, -15.0)])
+def test_without_a_yaw_axis_it_stays_level_along_the_nose(lean: float, pitch: float) -> None:
+    b = bench(SERVO9_FUNCTION=0.0)
+    b.vehicle.v.autopilot.estimate.euler = Euler(0.0, math.radians(lean), 0.0)
+    assert b.command(PITCH_YAW, pitch, 60.0) == ACCEPTED
+    b.run(0.1)
+    assert told(b)[1] == pytest.approx((0.0, pitch - lean, 0.0), abs=0.01)
+
+
+@pytest.mark.parametrize(("pitch", "is_steep"), [(-84.0, False), (-85.5, True), (-88.0, True)])
+def test_straight_down_it_does_not_roll(pitch: float, is_steep: bool) -> None:
+    """From 85 degrees on, where roll and yaw turn it about the same axis."""
+    b = bench()
+    b.vehicle.v.autopilot.estimate.euler = Euler(math.radians(2.0), 0.0, 0.0)
+    assert b.command(PITCH_YAW, pitch, 0.0) == ACCEPTED
+    b.run(0.1)
+    euler = told(b)[1]
+    assert (abs(euler.pitch) > 85.0) == is_steep and (abs(euler.roll) < 0.01) == is_steep
+
+
+@pytest.mark.parametrize(
+    ("pulse", "turned", "share"),
+    [(0, 0, 0.0), (1000, 0, -1.0), (900, 0, -1.0), (1400, 0, 0.0), (1200, 0, -0.5), (1700, 0, 0.5), (2100, 0, 1.0),
+     (1700, 1, -0.5)],
+)  # fmt: skip
+@pytest.mark.parametrize(("option", "axis", "output"), [(212.0, "ROLL", 2), (213.0, "PITCH", 1), (214.0, "YAW", 0)])
+@pytest.mark.parametrize("channel", [1, 16])
+def test_a_stick_may_be_on_any_channel(
+    pulse: int, turned: int, share: float, option: float, axis: str, output: int, channel: int
+) -> None:
+    """RCn_OPTION 212 roll, 213 pitch, 214 yaw; its middle is RCn_TRIM."""
+    ends = {"MIN": 1000.0, "TRIM": 1400.0, "MAX": 2000.0, "REVERSED": float(turned), "OPTION": option}
+    limits = {f"MNT1_{axis}_MIN": -40.0, f"MNT1_{axis}_MAX": 40.0}
+    b = bench(**limits, **{f"RC{channel}_{name}": value for name, value in ends.items()})
+    b.vehicle.v.autopilot.rc.channels[channel - 1] = pulse
+    assert pulses(b)[output] == 1500 + round(400 * share)
+
+
+def test_a_stick_without_travel_is_in_its_middle_and_a_switch_ends_the_lock_of_the_sticks() -> None:
+    b = bench(RC6_OPTION=213.0, RC6_MIN=1000.0, RC6_TRIM=2000.0, RC6_MAX=2000.0)
+    b.vehicle.v.autopilot.rc.channels[5] = 2100
+    assert pulses(b)[1] == 1500
+    for position, flags in ((HIGH, YAW_LOCK), (LOW, 0)):
+        b.bridge.switched(163, position)
+        assert told(b)[0].flags == LEVEL | FROM_NOSE | flags
+
+
+def test_rates_of_the_sticks_turn_each_axis_to_its_end() -> None:
+    b = bench(RC6_OPTION=212.0, RC7_OPTION=214.0, MNT1_RC_RATE=20.0, MNT1_ROLL_MIN=-15.0, MNT1_YAW_MAX=120.0)
+    channels = b.vehicle.v.autopilot.rc.channels
+    channels[5], channels[6] = int(b.vehicle.parameters["RC6_MIN"]), int(b.vehicle.parameters["RC7_MAX"])
+    b.run(0.5)
+    assert (told(b)[1].roll, told(b)[1].yaw) == pytest.approx((-10.0, 10.0), abs=0.5)
+    b.run(10.0)
+    assert (told(b)[1].roll, told(b)[1].yaw) == pytest.approx((-15.0, 120.0), abs=0.01)

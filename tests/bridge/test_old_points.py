@@ -73,6 +73,8 @@ def test_without_a_point_of_return_the_middle_is_told(bench: Bench) -> None:
         (1, 0, 1, 1.0, "Invalid FENCE_TOTAL, must be at least 5"),
         (5, 0, 5, 91.0, "Invalid fence point, bad lat or lng"),
         (5, 0, 5, float("nan"), "Invalid fence point, bad lat or lng"),
+        (4, 0, 4, 1.0, "Invalid FENCE_TOTAL, must be at least 5"),
+        (5, 5, 5, 1.0, "Invalid fence point, index past total (5 >= 5)"),
     ],
 )
 def test_what_is_refused(bench: Bench, total: int, k: int, count: int, lat: float, text: str) -> None:
@@ -98,3 +100,34 @@ def test_rally_points_one_by_one(bench: Bench) -> None:
         assert said[-1].text == text
     said = bench.ask(mavlink.MAVLink_rally_fetch_point_message(1, 1, 1), "STATUSTEXT")
     assert said[-1].text == "Bad rally point ID"
+
+
+def test_old_messages_are_named_once_each(bench: Bench) -> None:
+    bench.vehicle.parameters.update({"FENCE_TOTAL": 5.0, "RALLY_TOTAL": 1.0})
+    messages = {
+        "FENCE_POINT": mavlink.MAVLink_fence_point_message(1, 1, 0, 5, 1.0, 2.0),
+        "FENCE_FETCH_POINT": mavlink.MAVLink_fence_fetch_point_message(1, 1, 0),
+        "RALLY_POINT": mavlink.MAVLink_rally_point_message(1, 1, 0, 1, 10, 20, 30, 0, 0, 0),
+        "RALLY_FETCH_POINT": mavlink.MAVLink_rally_fetch_point_message(1, 1, 0),
+    }
+    for name, sent in messages.items():
+        for first in (True, False):
+            said = [(m.severity, m.text) for m in bench.ask(sent, "STATUSTEXT")]
+            assert ((6, f"Received message ({name}) is deprecated") in said) == first
+            assert len(said) == first, said
+
+
+def test_a_corner_at_the_ends_of_the_earth(bench: Bench) -> None:
+    bench.vehicle.parameters["FENCE_TOTAL"] = 5
+    for lat, lon, taken in ((90.0, 180.0, True), (-90.0, -180.0, True), (1.0, 180.1, False), (1.0, -180.1, False)):
+        said = [m.text for m in put(bench, 1, 5, lat, lon)]
+        assert ("Invalid fence point, bad lat or lng" in said) == (not taken)
+
+
+def test_answers_are_for_who_asks_and_a_fence_is_there_before_all_corners_are(bench: Bench) -> None:
+    bench.vehicle.parameters["FENCE_TOTAL"] = 5
+    put(bench, 2, 5, 1.5, 2.5)
+    point = fetch(bench, 2)
+    assert (point.lat, point.lng) == (pytest.approx(1.5, abs=1e-6), pytest.approx(2.5, abs=1e-6))
+    assert (point.target_system, point.target_component) == (255, 190)
+    assert [(fetch(bench, k).lat, fetch(bench, k).lng) for k in (1, 3, 4)] == [(0.0, 0.0)] * 3

@@ -186,3 +186,43 @@ def test_the_fraction_of_an_output_number_is_cut_off() -> None:
     b = bench()
     assert b.command(SET_SERVO, 9.5, 1700) == ACCEPTED
     assert servos(b) == [(9, 1700)]
+
+
+def test_what_repeats_is_ended_by_its_own_output_or_relay_alone() -> None:
+    b = bench()
+    assert b.command(REPEAT_SERVO, 10, 1800, -1, 1.0) == ACCEPTED
+    servos(b)
+    assert b.command(SET_SERVO, 9, 1700) == b.command(SET_RELAY, 1, 1) == ACCEPTED
+    b.run(0.5)
+    assert servos(b) == [(9, 1700), (10, 1500)]
+    assert b.command(REPEAT_RELAY, 0, -1, 1.0) == ACCEPTED
+    assert changes(b, 1.2, lambda: status(b)[1] & 1) == [(0.0, 1), (0.5, 0), (1.0, 1)]
+    assert b.command(SET_RELAY, 0, 0) == ACCEPTED
+    assert changes(b, 2.0, lambda: status(b)[1] & 1) == [(0.0, 0)]
+
+
+@pytest.mark.parametrize("number", [9, 16])
+def test_repeated_no_times_an_output_stays_as_it_is(number: int) -> None:
+    b = bench()
+    b.vehicle.v.actuators.pwm[number - 1] = 1234
+    assert b.command(REPEAT_SERVO, number, 1800, 0, 1.0) == ACCEPTED
+    b.run(3.0)
+    assert servos(b) == [(number, 1234)]
+
+
+@pytest.mark.parametrize("period", [0.0, -1.0, 0.02])
+def test_it_goes_to_and_fro_fifty_times_a_second_at_most(period: float) -> None:
+    b = bench()
+    assert b.command(REPEAT_SERVO, 10, 1800, -1, period) == ACCEPTED
+    servos(b)
+    b.run(1.0)
+    assert len(servos(b)) == 50
+
+
+def test_no_text_is_lost_on_an_output_that_there_is_not() -> None:
+    b = bench()
+    for number, said in ((0, 0), (-3, 0), (1, 1), (17, 1)):
+        b.client.receive()
+        b.client.send(mavlink.MAVLink_command_long_message(1, 1, SET_SERVO, 0, number, 1500, 0, 0, 0, 0, 0))
+        b.bridge.receive()
+        assert len(b.client.receive("STATUSTEXT")) == said, number

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -208,3 +209,77 @@ def test_a_rover_has_none() -> None:
     b = bench(FakeRover())
     assert b.command(MavCmd.DO_PARACHUTE, RELEASE) == UNSUPPORTED
     assert pulse(b) is None
+
+
+OUT_OF_CONTROL = {"error": math.radians(30.5), "sinks": 4.0}
+
+
+@pytest.mark.parametrize(
+    ("answers", "released_s"),
+    [
+        (OUT_OF_CONTROL, 1.0), ({**OUT_OF_CONTROL, "error": math.radians(29.9)}, None),
+        ({**OUT_OF_CONTROL, "sinks": 0.0}, None),
+        ({**OUT_OF_CONTROL, "height": 10.0}, 1.0), ({**OUT_OF_CONTROL, "height": 9.99}, None),
+        ({**OUT_OF_CONTROL, "landed": True}, None),
+        ({"sinks": 5.01}, 1.1), ({"sinks": 5.0}, None), ({"sinks": 5.01, "height": 9.99}, None),
+    ],
+)  # fmt: skip
+def test_a_fall_lasts_a_second_before_it_is_released(answers: Any, released_s: float | None) -> None:
+    """Leaning 30 degrees more than it should and sinking, or sinking faster than CHUTE_CRT_SINK; not too low."""
+    b = bench(**CHUTE, CHUTE_ALT_MIN=10.0, CHUTE_CRT_SINK=5.0)
+    given = flying(b)
+    given.update(answers)
+    b.autopilot.armed = lambda: True  # type: ignore[method-assign]
+    b.run((released_s or 20.0) - 0.0025)
+    assert given["released"] == []
+    b.run(0.0025)
+    assert given["released"] == ([True] if released_s else [])
+
+
+def test_a_vehicle_that_comes_back_under_control_begins_to_fall_anew() -> None:
+    b = bench(**CHUTE)
+    answers = flying(b)
+    b.autopilot.armed = lambda: True  # type: ignore[method-assign]
+    answers.update(OUT_OF_CONTROL)
+    b.run(0.95)
+    answers["error"] = 0.0
+    b.run(1.0)
+    answers["error"] = 1.0
+    b.run(0.9)
+    assert answers["released"] == []
+    b.run(0.05)
+    assert answers["released"] == [True]
+
+
+def test_without_a_least_height_none_is_too_low() -> None:
+    b = bench(**CHUTE, CHUTE_ALT_MIN=0.0)
+    answers = flying(b)
+    answers["height"] = -5.0
+    assert b.command(MavCmd.DO_PARACHUTE, RELEASE) == ACCEPTED and answers["released"] == [True]
+
+
+@pytest.mark.parametrize(("options", "stops", "closes"), [(0.0, True, True), (1.0, True, False), (2.0, False, True)])
+def test_it_opens_after_its_delay_and_closes_after_two_seconds(options: float, stops: bool, closes: bool) -> None:
+    """CHUTE_OPTIONS 1 holds it open, 2 leaves the motors on."""
+    b = bench(**CHUTE, CHUTE_DELAY_MS=700.0, CHUTE_OPTIONS=options)
+    answers = flying(b)
+    b.run(3.0)
+    assert (b.command(MavCmd.DO_PARACHUTE, RELEASE), answers["released"]) == (ACCEPTED, [stops])
+    seen = []
+    for seconds in (0.6975, 0.0025, 1.9975, 0.0025, 20.0):
+        b.run(seconds)
+        seen.append(pulse(b))
+    assert seen == [1100, 1300, 1300, *[1100 if closes else 1300] * 2]
+
+
+@pytest.mark.parametrize(("kind", "relay"), [(0.0, 0), (3.0, 3), (5.0, 5)])
+def test_it_may_hang_on_a_relay(kind: float, relay: int) -> None:
+    pins = {f"RELAY{relay + 1}_FUNCTION": 1.0, f"RELAY{relay + 1}_PIN": 9.0, "CHUTE_DELAY_MS": 0.0, "CHUTE_TYPE": kind}
+    b = bench(**{**CHUTE, **pins})
+    flying(b)
+    masks = [b.vehicle.parameters["SIM_PIN_MASK"]]
+    b.command(MavCmd.DO_PARACHUTE, RELEASE)
+    for seconds in (0.01, 2.5):
+        b.run(seconds)
+        masks.append(b.vehicle.parameters["SIM_PIN_MASK"])
+    assert masks == [0.0, 512.0, 0.0] and pulse(b) is None

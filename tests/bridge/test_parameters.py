@@ -18,7 +18,7 @@ from sitl.autopilot.copter.parameters import TABLE
 from sitl.autopilot.params.parameter import stored
 from sitl.bridge.frame import Splitter
 from sitl.bridge.metadata import file_crc
-from sitl.bridge.services.parameter_protocol import MOST_REPORTED
+from sitl.bridge.services.parameter_protocol import pack_parameters
 from tests.bridge.fakes import Bench, Client
 
 
@@ -113,9 +113,9 @@ def test_what_has_no_effect_is_kept_and_told_once(bench: Bench) -> None:
 
 def test_a_client_that_sets_many_without_effect_is_not_flooded(bench: Bench) -> None:
     said = []
-    for name in [p.name for p in TABLE if not (p.has_effect or p.doc)][: MOST_REPORTED + 5]:
+    for name in [p.name for p in TABLE if not (p.has_effect or p.doc)][:15]:
         said += [m.text for m in write(bench, name, 1.0) if m.get_type() == "STATUSTEXT"]
-    assert len(said) == MOST_REPORTED + 1 and said[-1] == "Others that are set have no effect either"
+    assert len(said) == 11 and said[-1] == "Others that are set have no effect either"
 
 
 def test_a_group_is_in_the_list_while_it_is_switched_on(bench: Bench) -> None:
@@ -164,9 +164,21 @@ def test_the_whole_list_even_over_a_lossy_link(bench: Bench, drop: float) -> Non
 
 
 def test_the_list_is_paced(bench: Bench) -> None:
+    """Ten in ten milliseconds, and it goes on after a restore."""
+    bench.run(0.0025)
     bench.client.send(mavlink.MAVLink_param_request_list_message(1, 1))
-    bench.run(0.02)
-    assert 0 < len(bench.client.receive("PARAM_VALUE")) <= 30
+
+    def came(seconds: float) -> list[int]:
+        bench.run(seconds)
+        return [m.param_index for m in bench.client.receive("PARAM_VALUE")]
+
+    assert came(0.0025) == list(range(10)) and came(0.0075) == []
+    held = bench.bridge.snapshot()
+    for _ in range(2):
+        assert came(0.0025) == list(range(10, 20)) and came(0.0075) == []
+        bench.bridge.restore(held)
+    end = len(names(bench))
+    assert came(0.01 * end) == list(range(10, end)) and came(1.0) == []
 
 
 HEADER = struct.Struct("<HBBBBBBI")
@@ -259,6 +271,19 @@ def crc(data: bytes) -> int:
     return value
 
 
+def test_names_share_what_they_have_in_common_with_the_one_before() -> None:
+    """At most all letters but the last, and at most fifteen."""
+    names = ("ABCD", "ABC", "ABCE", "XBCE", "A23456789012345", "A234567890123456", "A234567890123457")
+    values = [(TABLE["ANGLE_MAX"]._replace(name=name), 1000.0 + k, 1000.0) for k, name in enumerate(names)]
+    for with_defaults in (False, True):
+        decoded = MAVFTP.ftp_param_decode(pack_parameters(values, with_defaults))
+        assert [(name.decode(), value) for name, value, _ in decoded.params] == [(p.name, v) for p, v, _ in values]
+    shared = [0, 2, 3, 0, 0, 15, 15]
+    sizes = [2 + len(name) - n + 2 for name, n in zip(names, shared, strict=True)]
+    assert len(pack_parameters(values, False)) == 6 + sum(sizes)
+    assert len(pack_parameters(values, True)) == 6 + sum(sizes) + 2 * 6, "the first has its default"
+
+
 def test_read_in_pieces(bench: Bench) -> None:
     whole = fetch(bench, b"@PARAM/param.pck")
     (answer,) = bench.ask(request(READ, offset=100, size=50))
@@ -314,7 +339,9 @@ def test_names_of_the_development_version_are_read_and_set(
     answers = values_of(write(bench, name, value))
     assert answers == {name: value, own: kept}
     assert bench.vehicle.parameters[own] == kept
-    assert values_of(read(bench, name)) == {name: value}
+    (answer,) = read(bench, name)
+    assert (answer.param_id, answer.param_value, answer.param_index) == (name, value, 65535)
+    assert answer.param_count == len(names(bench)) and answer.param_type == read(bench, own)[0].param_type
 
 
 def test_other_names_of_other_versions_are_not_there(bench: Bench) -> None:

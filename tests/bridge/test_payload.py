@@ -71,7 +71,7 @@ def test_a_gripper_closes_and_opens(vehicle: type[FakeVehicle]) -> None:
     assert texts(b, 0.1) == ["Gripper load grabbed"]
     assert b.command(GRIPPER, 2, 0.7) == ACCEPTED  # whole numbers, any gripper
     assert (texts(b, 1.0), pulse(b)) == (["Gripper load releasing", "Gripper load released"], 1100)
-    assert b.command(GRIPPER, 1, 2) == FAILED
+    assert b.command(GRIPPER, 1, 2) == FAILED == b.command(GRIPPER, 1, -0.5)
     b.vehicle.parameters["GRIP_ENABLE"] = 0.0
     assert b.command(GRIPPER, 1, 1) == FAILED
     b.bridge.switched(19, HIGH)
@@ -320,3 +320,83 @@ def test_a_mission_moves_a_switch(p1: float, p2: float, asked: Any) -> None:
     b = bench()
     b.bridge.carry_out(MissionItem(MavCmd.DO_AUX_FUNCTION, p1=p1, p2=p2))
     assert [call[1:] for call in b.autopilot.calls if call[0] == "run_aux_function"] == asked
+
+
+# ---------------------------------------------------------------- times and ends
+
+
+@pytest.mark.parametrize("params", [{"GRIP_ENABLE": 0.0}, {"GRIP_TYPE": 0.0}, {"GRIP_TYPE": 3.0}])
+def test_a_gripper_that_is_not_there_at_boot_is_not_there_later(params: dict[str, float]) -> None:
+    b = bench(**{**GRIP, **params})
+    b.vehicle.parameters.update({"GRIP_ENABLE": 1.0, "GRIP_TYPE": 1.0})
+    assert b.command(GRIPPER, 1, 1) == FAILED and pulse(b) is None
+    assert bench(**GRIP).command(GRIPPER, 1, -0.5) == FAILED
+
+
+def test_a_gripper_moves_for_half_a_second_and_closes_in_time() -> None:
+    b = bench(**GRIP, GRIP_AUTOCLOSE=2.0)
+    texts(b, 3.0)
+    assert b.command(GRIPPER, 1, 0) == ACCEPTED
+    assert (texts(b, 0.4975), texts(b, 0.0025)) == (["Gripper load releasing"], ["Gripper load released"])
+    assert (texts(b, 1.4975), texts(b, 0.0025)) == ([], ["Gripper load grabbing"])
+    assert (texts(b, 0.4975), texts(b, 0.0025)) == ([], ["Gripper load grabbed"])
+    assert texts(b, 5.0) == [], "it stays closed"
+
+
+@pytest.mark.parametrize(("regrab", "again"), [(0.0, []), (-1.0, []), (2.0, ["Gripper load grabbing"])])
+def test_an_electromagnet_grabs_again_at_its_interval(regrab: float, again: list[str]) -> None:
+    b = bench(**{**GRIP, "GRIP_TYPE": 2.0}, GRIP_REGRAB=regrab)
+    texts(b, 3.0)
+    assert b.command(GRIPPER, 1, 1) == ACCEPTED
+    assert (texts(b, 1.9975), texts(b, 0.0025)) == (["Gripper load grabbing"], again)
+
+
+def test_missions_wind_and_what_is_let_go_stands() -> None:
+    b = bench(**REEL)
+    assert (length(b).line_length, length(b).speed, length(b).time_usec) == (0.0, 0.0, 0)
+    b.bridge.carry_out(MissionItem(WINCH, p1=1.0, p2=2.0, p3=7.0, p4=0.5))
+    b.run(1.0)
+    assert (length(b).speed, length(b).time_usec) == (0.5, 1_000_000)
+    assert length(b).line_length == pytest.approx(0.5), "fifty steps a second"
+    b.bridge.carry_out(MissionItem(WINCH, p1=1.0, p2=0.0))
+    assert (length(b).speed, pulse(b)) == (0.0, 0)
+    b.run(1.0)
+    assert (length(b).line_length, length(b).speed, pulse(b)) == (pytest.approx(0.5), 0.0, 0)
+    assert b.command(WINCH, 1, 1, 0, 0) == ACCEPTED and texts(b)[-1] == "Winch: raising  0.0m to  0.5m"
+
+
+@pytest.mark.parametrize(("speed", "sprays"), [(1.0, True), (0.99, False)])
+def test_a_sprayer_begins_at_its_least_speed(speed: float, sprays: bool) -> None:
+    b = bench(**SPRAY, SPRAY_SPEED_MIN=100.0)
+    b.vehicle.v.autopilot.arming.armed = True
+    moving(b, speed)
+    assert b.command(SPRAYER, 2) == ACCEPTED
+    b.run(2.0)
+    assert pulse(b, 10) is None, "neither on nor off"
+    assert b.command(SPRAYER, 1) == ACCEPTED
+    b.run(0.6)
+    assert pulse(b, 10) == 1100, "a tenth of a second after the first look"
+    b.run(0.1)
+    assert pulse(b, 10) == (1300 if sprays else 1100)
+
+
+@pytest.mark.parametrize(("armed", "pumped"), [(False, 1180), (True, 1100)])
+def test_a_test_of_the_sprayer_is_as_at_one_metre_a_second_and_of_a_disarmed_vehicle(armed: bool, pumped: int) -> None:
+    b = bench(**SPRAY, SPRAY_PUMP_MIN=2.0, SPRAY_PUMP_RATE=10.0)
+    b.vehicle.v.autopilot.arming.armed = armed
+    b.bridge.switched(15, HIGH)
+    b.run(2.0)
+    assert pulse(b) == pumped
+
+
+def test_a_sprayer_that_gets_too_slow_goes_on_for_a_second() -> None:
+    b = bench(**SPRAY)
+    b.vehicle.v.autopilot.arming.armed = True
+    moving(b, 5.0)
+    b.command(SPRAYER, 1)
+    b.run(1.7)
+    moving(b, 0.0)
+    b.run(1.2)
+    assert pulse(b, 10) == 1300
+    b.run(0.2)
+    assert pulse(b, 10) == 1100

@@ -40,6 +40,24 @@ def test_streams(profile: Profile) -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
+def test_numbers_of_streams_are_mavlinks(profile: Profile) -> None:
+    """MAV_DATA_STREAM, under the names of ArduPilot's parameters."""
+    assert {number: name for number, (name, _) in profile.groups.items()} == {
+        mavlink.MAV_DATA_STREAM_RAW_SENSORS: "RAW_SENS", mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: "EXT_STAT",
+        mavlink.MAV_DATA_STREAM_RC_CHANNELS: "RC_CHAN", mavlink.MAV_DATA_STREAM_RAW_CONTROLLER: "RAW_CTRL",
+        mavlink.MAV_DATA_STREAM_POSITION: "POSITION", mavlink.MAV_DATA_STREAM_EXTRA1: "EXTRA1",
+        mavlink.MAV_DATA_STREAM_EXTRA2: "EXTRA2", mavlink.MAV_DATA_STREAM_EXTRA3: "EXTRA3",
+    }  # fmt: skip
+
+
+def test_who_it_says_it_is(bench: Bench) -> None:
+    """The capabilities of an ArduCopter, and the version that is followed."""
+    (m,) = bench.telemetry("AUTOPILOT_VERSION")
+    assert (m.capabilities, m.flight_sw_version, m.uid) == (0xFBEF, 4 << 24 | 7 << 16, 1)
+    assert len(bytes(m.flight_custom_version)) == 8 and int(bytes(m.flight_custom_version), 16) >= 0
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=NAMES)
 def test_commands(profile: Profile) -> None:
     known = mavlink.enums["MAV_CMD"]
     for number, entry in profile.commands.items():
@@ -115,6 +133,20 @@ def test_every_message_in_and_out_is_on_the_page(bench: Bench) -> None:
 def test_every_command_says_what_it_does() -> None:
     for line in docs.commands().splitlines()[2:]:
         assert len(line.split("|")[5].strip()) > 10, line
+
+
+def test_services_of_others_are_known_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Own(Service):
+        pass
+
+    monkeypatch.setattr(services, "_registered", [])
+    for _ in range(2):
+        services.register_service(Own)
+    assert services.all_services() == (*services.ALL_SERVICES, Own)
+    for odd in ("Own", int):
+        with pytest.raises(TypeError, match="is no subclass"):
+            services.register_service(odd)  # type: ignore[arg-type]
+    assert isinstance(Bench().bridge.get(Own), Own)
 
 
 @pytest.mark.parametrize(

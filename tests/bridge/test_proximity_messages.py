@@ -205,3 +205,40 @@ def test_objects_are_kept_where_they_were_seen_for_bendy_ruler(
         if ap.objects.until_ms[k]
     ]
     assert found == [pytest.approx(at, abs=0.01) for at in (positions if kept else [])]
+
+
+@pytest.mark.parametrize(
+    ("message", "expected"),
+    [
+        (one(7, 450), {7: 450}), (one(8, 450), {}), (one(0, 10), {0: 10}), (one(0, 9), {}), (one(0, 500), {0: 500}),
+        (place(10.0, 0.0, 2.6), {0: 1000}), (place(10.0, 0.0, -2.6), {0: 1000}),
+        (place(10.0, 0.0, 2.75), {}), (place(10.0, 0.0, -2.75), {}), (place(20.5, 0.0, 0.0), {}),
+        (mavlink.MAVLink_obstacle_distance_3d_message(0, 0, 12, 65535, 5.0, 0.0, 0.0, 5.5, 20.0), {}),
+        (mavlink.MAVLink_obstacle_distance_3d_message(0, 0, 1, 65535, 5.0, 0.0, 0.0, 0.0, 20.0), {}),
+        (mavlink.MAVLink_obstacle_distance_message(0, 0, [49, 50] + [NOTHING] * 70, 90, 50, 1000, 0, 0, 12), {2: 50}),
+        (distances([300] * 8 + [200], 45, 0.0, 1000), dict.fromkeys(range(8), 300)),
+        (distances([300] * 8 + [200], -45, 0.0, 1000), dict.fromkeys(range(8), 300)),
+    ],
+)  # fmt: skip
+def test_ranges_orientations_and_heights_that_count(bench: Bench, message: Any, expected: dict[int, int]) -> None:
+    """Sectors reach 15 degrees up and down, and a second turn of readings is left out."""
+    looking(bench)
+    assert sees(bench, message) == expected
+    (m,) = bench.telemetry("SYS_STATUS")
+    assert expected == {} or m.onboard_control_sensors_health & PROXIMITY
+
+
+@pytest.mark.parametrize("message", [one(0, 450), place(4.5, 0.0, 0.0), distances([450], 10, 0.0, 1000)])
+def test_a_sensor_that_is_turned(bench: Bench, message: Any) -> None:
+    """PRX1_YAW_CORR: ahead of it is to the right of the vehicle."""
+    looking(bench).autopilot.params.PRX1.YAW_CORR = 90.0
+    assert sees(bench, message) == {2: 450}
+
+
+@pytest.mark.parametrize("messages", [(one(0, 100), one(0, 200)), (place(1.0, 0.0, 0.0), place(2.0, 0.0, 0.0))])
+def test_readings_are_low_passed(bench: Bench, messages: Any) -> None:
+    v = looking(bench)
+    v.autopilot.params.PRX.FILT = 1.0
+    bench.ask(messages[0])
+    v.time_us += 100_000
+    assert sees(bench, messages[1]) == {0: 138}

@@ -98,3 +98,48 @@ def test_the_scan_repeats_at_the_interval_asked_for(rover_bench: Bench) -> None:
     rover_bench.run(0.5)
     parts = list(rover_bench.client.receive(SCAN))
     assert [p.array_id for p in parts] == [0, 1, 2, 3, 4] * 5
+
+
+@pytest.mark.parametrize(("ranges", "least", "longest"), [(False, 1, 5000), (True, 25, 1200)])
+def test_limits_of_a_range_finder(bench: Bench, ranges: bool, least: int, longest: int) -> None:
+    """Those of the airframe in a world; else what parameters say."""
+    measured(bench, "erle_copter", [1.0], down=math.inf)
+    down = bench.vehicle.v.physics.downward
+    down.ranges, down.range_min, down.range_max = ranges, 0.25, 12.0
+    (m,) = bench.telemetry(DOWN)
+    assert (m.min_distance, m.max_distance, m.current_distance) == (least, longest, longest + 1)
+    (m,) = bench.telemetry("RANGEFINDER")
+    assert (m.distance, m.voltage) == (0.01 * longest + 1.0, 0.0)
+    bench.vehicle.v.sensors.rangefinder_range = 1.25
+    assert bench.telemetry("RANGEFINDER")[0].distance == 1.25
+    bench.vehicle.v.sensors.rangefinder_count = 0
+    assert bench.telemetry("RANGEFINDER") == []
+
+
+def test_range_finder_and_sectors_come_one_after_the_other(bench: Bench) -> None:
+    measured(bench, "erle_copter", [1.0], down=2.0)
+    v = bench.vehicle.v
+    v.time_us = 20_000_000
+    seen: Any = v.autopilot.proximity
+    seen.kind, seen.update_us, seen.range_min, seen.range_max = 2, v.time_us, 0.25, 15.0
+    for k, metres in ((0, 3.0), (3, 4.5), (7, 6.0)):
+        seen.seen_us[k], seen.distance[k] = v.time_us, metres
+    told = bench.telemetry(DOWN)
+    assert [(m.id, m.orientation, m.current_distance) for m in told] == [
+        (0, 25, 200), (10, 0, 300), (13, 3, 450), (17, 7, 600)
+    ]  # fmt: skip
+    assert {(m.min_distance, m.max_distance, m.covariance, m.type) for m in told[1:]} == {(25, 1500, 0, 0)}
+    assert {m.time_boot_ms for m in told} == {20_000}
+
+
+@pytest.mark.parametrize(("samples", "first", "last"), [(72, 0, 71), (73, 0, 71), (2, 0, 1)])
+def test_sectors_reach_from_left_to_right(bench: Bench, samples: int, first: int, last: int) -> None:
+    ranges = np.full(samples, 5.0, np.float32)
+    ranges[0], ranges[-1] = 2.0, 3.0  # the rightmost, the leftmost
+    measured(bench, "erle_copter", ranges)
+    bench.vehicle.v.physics.airframe.lidar_samples = samples
+    (m,) = bench.telemetry(SECTORS)
+    assert (m.distances[first], m.distances[last]) == (300, 200)
+    half = 135.0 if samples <= 72 else 135.0 - 1.875
+    assert m.angle_offset == pytest.approx(-half)
+    assert m.angle_offset + last * m.increment_f == pytest.approx(half, abs=1e-3)

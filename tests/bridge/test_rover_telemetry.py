@@ -80,6 +80,18 @@ def test_wheel_distance_needs_encoders(rover_bench: Bench) -> None:
     sensors.wheel_count, sensors.wheel_distance = 7, (12.5, -3.0)
     rolled = get(rover_bench, "WHEEL_DISTANCE")
     assert rolled.count == 2 and list(rolled.distance[:3]) == [12.5, -3.0, 0.0]
+    p = rover_bench.vehicle.v.autopilot.params
+    for first, second, count in ((1.0, 0.0, 1), (1.0, 1.0, 2), (0.0, 0.0, 2)):
+        p.WENC.TYPE, p.WENC2.TYPE = first, second
+        rolled = get(rover_bench, "WHEEL_DISTANCE")
+        assert rolled.count == count and list(rolled.distance[:3]) == [12.5, -3.0 if count == 2 else 0.0, 0.0]
+
+
+@pytest.mark.parametrize(("acted", "ekf", "state"), [(0, 0, 4), (1, 0, 5), (0, 1, 5)])
+def test_a_rover_in_a_failsafe_is_critical(rover_bench: Bench, acted: int, ekf: int, state: int) -> None:
+    modes = rover_bench.vehicle.v.autopilot.modes
+    modes.links.acted, modes.failsafe.ekf = acted, ekf
+    assert get(rover_bench, "HEARTBEAT").system_status == state
 
 
 @pytest.fixture

@@ -195,3 +195,40 @@ def test_attitude(v: Copter, mask: int, q: Any, rates: Any) -> None:
     assert tuple(target.rates) == pytest.approx(rates)
     if q is not None:
         assert tuple(target.q) == q, "of length 1"
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("speed", "flies"), [(1000.0, True), (-1000.0, True), (1000.1, False), (-1000.1, False)])
+def test_no_component_of_a_velocity_is_faster_than_1000_m_s(v: Copter, axis: int, speed: float, flies: bool) -> None:
+    vel = [1.0, 1.0, 1.0]
+    vel[axis] = speed
+    assert (flown(v, local(ONLY_VELOCITY, vel=vel))[2] != ZERO) == flies
+
+
+@pytest.mark.parametrize(("length", "flies"), [(1.0004, True), (0.9996, True), (1.0006, False), (0.9994, False)])
+def test_quaternions_have_length_one(v: Copter, length: float, flies: bool) -> None:
+    assert (flown(v, attitude(7, (length, 0, 0, 0)))[0] == ANGLE) == flies
+
+
+@pytest.mark.parametrize(
+    ("frame", "mask", "known", "over_ground"),
+    [
+        (10, ONLY_POSITION, True, True), (11, ONLY_POSITION, True, True), (3, ONLY_POSITION, True, False),
+        (10, POS_VEL, True, None), (10, 0xC38, True, None), (10, ONLY_POSITION, False, None),
+    ],
+)  # fmt: skip
+def test_heights_over_ground_that_is_no_plain(
+    v: Copter, frame: int, mask: int, known: bool, over_ground: bool | None
+) -> None:
+    """Of a location alone; where nobody knows the ground nothing changes, and with a velocity it stops."""
+    t, modes = v.autopilot.terrain, v.autopilot.modes
+    t.asked = t.has_square = True
+    t.is_known = t.was_known = known
+    t.home, t.spacing, t.corners[:] = 600.0, 100, [650.0] * len(t.corners)
+    modes.guided.submode = POSITION
+    taken = is_taken(v, place(frame, HOME[0], 10.0, mask))
+    if over_ground is None:
+        assert not taken if not known else modes.guided.submode == VELOCITY_ACCEL
+    else:
+        assert modes.guided.submode == POSITION and modes.nav.over_ground == over_ground
+        assert tuple(modes.guided.pos) == pytest.approx((0.0, 0.0, -10.0))

@@ -8,10 +8,11 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from sitl.bridge.frame import Splitter
+from sitl.bridge.dialect import message
+from sitl.bridge.frame import Splitter, encode_v1, encode_v2
 from sitl.bridge.services.signing import SigningService
 from sitl.bridge.services.statustext import HEARTBEAT
-from sitl.bridge.signing import LAST, WINDOW, is_signed
+from sitl.bridge.signing import LAST, WINDOW, Signing, SigningState, Stream, is_signed
 from tests.bridge.fakes import Bench, Client
 
 KEY = bytes(range(32))
@@ -183,3 +184,59 @@ def test_pieces_and_rubbish_between_frames(bench: Bench, client: Client) -> None
     client.link.send(bytes(300))
     bench.bridge.receive()
     assert [m.seq for m in client.receive("PING")] == [1, 2]
+
+
+# ---------------------------------------------------------------- without a vehicle
+
+
+def frame(signing: Signing, link: int = 1) -> bytes:
+    kind = message("PING")
+    return signing.signed(encode_v2(kind, kind.payload(seq=1), 0, 255, 190), link)
+
+
+@pytest.mark.parametrize(
+    ("key", "timestamp", "is_on", "begins"),
+    [
+        (bytes(32), 0, False, 0), (bytes(32), 1, True, 6_000_001), (KEY, 0, True, 6_000_000),
+        (KEY, (1 << 48) - 1 - 6_000_000, True, (1 << 48) - 1), (KEY, 1 << 48, True, (1 << 48) - 1),
+    ],
+)  # fmt: skip
+def test_zeros_alone_end_signing(key: bytes, timestamp: int, is_on: bool, begins: int) -> None:
+    """Else the own time stamp begins a minute later."""
+    signing = Signing(SigningState(KEY, 5, ((Stream(1, 2, 3), 4),)))
+    signing.set_key(key, timestamp)
+    assert (signing.is_on, signing.timestamp, signing.state().streams) == (is_on, begins, ())
+
+
+@pytest.mark.parametrize(
+    ("sent", "known", "accepted"),
+    [
+        (100, (), True), (99, (), False), (99, (98,), True), (98, (98,), False), (97, (98,), False),
+        (7_000_000, (98,), True),
+    ],
+)  # fmt: skip
+def test_new_streams_may_be_a_minute_behind_and_known_ones_rise(sent: int, known: Any, accepted: bool) -> None:
+    stream = Stream(1, 255, 190)
+    signing = Signing(SigningState(KEY, 6_000_100, tuple((stream, last) for last in known)))
+    assert signing.accepts(frame(Signing(SigningState(KEY, sent))), 255, 190) == accepted
+    assert signing.timestamp == max(6_000_100, sent)
+    assert dict(signing.state().streams).get(stream) == (sent if accepted else known[0] if known else None)
+
+
+@pytest.mark.parametrize(("streams", "accepted"), [(255, True), (256, False)])
+def test_no_more_than_256_streams_are_followed(streams: int, accepted: bool) -> None:
+    signing = Signing(SigningState(KEY, 0, tuple((Stream(k, 1, 1), 4) for k in range(streams))))
+    assert signing.accepts(frame(Signing(SigningState(KEY, 50))), 255, 190) == accepted
+
+
+def test_time_stamps_count_ten_microseconds_from_2015() -> None:
+    signing = Signing(SigningState(KEY, 7))
+    signing.follow_date(1_420_070_400_000_079)
+    assert signing.timestamp == 7
+    signing.follow_date(1_420_070_400_000_080)
+    assert signing.timestamp == 8
+    assert (frame(signing, 258)[-13], signing.timestamp) == (2, 9)
+    kind = message("PING")
+    old = encode_v1(kind, kind.payload(seq=1), 0, 255, 190)
+    assert signing.signed(old, 1) is old and signing.timestamp == 9
+    assert Signing(SigningState(KEY, -1)).timestamp == 0 and Signing(SigningState(KEY, 1 << 48)).timestamp == LAST

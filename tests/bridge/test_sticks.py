@@ -94,3 +94,21 @@ def test_whose_pulses_count(v: Any, pilot: int) -> None:
         before = bytes(v._bytes)
         rc_channels_override(filled(RcChannelsOverride, chan1_raw=1500), v, sender)
         assert (bytes(v._bytes) != before) == (sender == pilot)
+
+
+def test_channels_have_their_own_ends_up_to_the_sixteenth(v: Any) -> None:
+    """Those beyond go from 1100 to 1900."""
+    for channel in v.autopilot.params.RC:
+        channel.MIN, channel.MAX = 1000.0, 1400.0
+    for number, pulse in ((1, 1300), (16, 1300), (17, 1700), (18, 1700)):
+        v.autopilot.rc.override[:] = 0
+        v.autopilot.params.RCMAP.ROLL = float(number)
+        copter.manual_control(filled(ManualControl, target=1, y=500, x=INVALID, z=INVALID, r=INVALID), v, PILOT)
+        assert {k + 1: p for k, p in enumerate(v.autopilot.rc.override) if p != 0} == {number: pulse}
+
+
+def test_a_switch_keeps_ground_stations_from_the_sticks(v: Any) -> None:
+    v.autopilot.rc.override_blocked = True
+    rc_channels_override(filled(RcChannelsOverride, chan1_raw=1500), v, PILOT)
+    copter.manual_control(filled(ManualControl, target=1, y=500), v, PILOT)
+    assert not any(v.autopilot.rc.override) and v.autopilot.modes.failsafe.gcs_us == NOW

@@ -13,6 +13,7 @@ from sitl.autopilot.copter.modes.mode_list import TITLES
 from sitl.autopilot.rover.modes.mode_list import NAMES as ROVER_MODES
 from sitl.bridge.frame import Splitter
 from sitl.bridge.links.inprocess import InProcessLink
+from sitl.bridge.wire.streams import interval_of
 from sitl.core.vectors import Vec2, Vec3
 from tests.bridge.fakes import HOME, Bench, Client
 
@@ -302,6 +303,7 @@ def test_a_link_of_high_latency_has_one_message_and_only_when_it_is_on(bench: Be
     assert count(bench, client, 30.0) == 0
     assert bench.command(switch, 1) == 0
     assert count(bench, client, 30.0) == 6
+    assert interval_of(bench.bridge.channels[1].port, 235) == 5_000_000
     client.send(mavlink.MAVLink_command_long_message(1, 1, interval, 0, 235, 1e6, 0, 0, 0, 0, 0))
     client.send(mavlink.MAVLink_request_data_stream_message(1, 1, 0, 10, 1))
     assert count(bench, client, 30.0) == 30
@@ -310,6 +312,13 @@ def test_a_link_of_high_latency_has_one_message_and_only_when_it_is_on(bench: Be
     assert "HIGH_LATENCY2" not in {m.get_type() for m in bench.client.receive()}
     assert bench.command(switch, 1) == 0
     assert count(bench, client, 10.0) == 10
+    client.send(mavlink.MAVLink_command_long_message(1, 1, interval, 0, 235, 0, 0, 0, 0, 0, 0))
+    assert count(bench, client, 30.0) == 6
+    state = bench.bridge.snapshot()
+    assert bench.command(switch, 0) == 0
+    bench.bridge.restore(state)
+    late = high_latency_client(bench)
+    assert count(bench, late, 10.0) == 2, "it is on"
 
 
 def test_what_is_asked_for_follows_the_answer(bench: Bench) -> None:
@@ -326,7 +335,78 @@ def test_modes(rover_bench: Bench) -> None:
     assert [m.mode_name for m in found if m.properties & 2] == [b"INITIALISING"]
 
 
-@pytest.mark.parametrize(("number", "result"), [(285, 0), (280, 0), (281, 0), (9005, 0), (132, 0), (284, 4), (158, 4)])
-def test_messages_of_parts_that_are_off_may_be_asked_for(bench: Bench, number: int, result: int) -> None:
-    """As ArduCopter 4.7 answers without gimbal, winch and range-finder."""
-    assert bench.command(REQUEST, number) == result
+OF_PARTS = (
+    22, 35, 127, 128, 132, 133, 143, 173, 180, 191, 192, 225, 226, 246, 259, 260, 262, 269, 271, 277, 280, 281, 285,
+    295, 301, 373, 9005, 10008,
+)  # fmt: skip
+
+
+def test_messages_of_parts_that_are_off_may_be_asked_for(bench: Bench, rover_bench: Bench) -> None:
+    """As ArduCopter and ArduRover 4.7 answer without gimbal, winch and range-finder."""
+    for each, more, none in ((bench, (), (85, 284, 158)), (rover_bench, (85, 168, 11030), (284, 158))):
+        for number in (*OF_PARTS, *more):
+            assert each.command(REQUEST, number) == 0, number
+        for number in none:
+            assert each.command(REQUEST, number) == 4 or number in each.bridge.telemetry
+
+
+def test_what_is_asked_for_by_other_numbers_than_the_telemetrys(bench: Bench) -> None:
+    """TIMESYNC is not sent by request; MESSAGE_INTERVAL tells of a number that a message has."""
+    assert bench.command(REQUEST, 111) == 4
+    for number, told in ((0, 1_000_000), (111, 10_000_000), (30, -1), (65535, 0), (65536, None), (-1, None)):
+        for ask in ((REQUEST, 244, number), (GET_INTERVAL, number)):
+            values = (*ask[1:], *(0,) * (8 - len(ask)))
+            answers = bench.ask(mavlink.MAVLink_command_long_message(1, 1, ask[0], 0, *values))
+            intervals = [m.interval_us for m in answers if m.get_type() == "MESSAGE_INTERVAL"]
+            assert intervals == ([] if told is None else [told]), number
+            assert [m.result for m in answers if m.get_type() == "COMMAND_ACK"] == [0 if told else 4]
+
+
+def test_default_intervals_of_what_everybody_is_sent(bench: Bench) -> None:
+    bench.run(3.0)
+    for number in (0, 111):
+        bench.command(SET_INTERVAL, number, 500_000)
+        bench.command(SET_INTERVAL, number, 0)
+    assert counts(bench, 40.0) == {"HEARTBEAT": 40, "TIMESYNC": 4}
+
+
+@pytest.mark.parametrize("number", [148, 253, 9999])
+def test_messages_that_are_sent_on_request_only(bench: Bench, number: int) -> None:
+    answers = bench.ask(mavlink.MAVLink_command_long_message(1, 1, SET_INTERVAL, 0, number, 1e5, 0, 0, 0, 0, 0))
+    assert [m.result for m in answers if m.get_type() == "COMMAND_ACK"] == [2]
+    said = [(m.severity, m.text) for m in answers if m.get_type() == "STATUSTEXT"]
+    assert said == [(6, f"No ap_message for mavlink id ({number})")]
+
+
+@pytest.mark.parametrize(("stepped", "pushed", "us"), [(True, False, 2500), (False, True, 2500), (False, False, 3000)])
+def test_who_steps_a_vehicle_may_have_messages_of_every_tick(
+    bench: Bench, stepped: bool, pushed: bool, us: int
+) -> None:
+    bench.bridge.is_stepped = stepped
+    if pushed:
+        bench.bridge.push_clock()
+    assert (bench.command(SET_INTERVAL, 30, us - 1), bench.command(SET_INTERVAL, 30, us)) == (2, 0)
+
+
+def test_rates_beyond_what_a_parameter_tells_and_requests_that_mean_nothing(bench: Bench) -> None:
+    for rate, start, told in ((400, 1, 400), (401, 1, 400), (399, 1, 399), (5, 2, 399), (5, 0, 0)):
+        bench.ask(request_stream(10, rate, start))
+        assert bench.vehicle.parameters["MAV1_EXTRA1"] == told
+    bench.ask(request_stream(99, 5))
+    bench.ask(mavlink.MAVLink_param_set_message(1, 1, b"MAV1_EXTRA1", -5.0, 4))
+    assert counts(bench, 3.0)["ATTITUDE"] == 0
+
+
+def test_modes_tell_whether_they_fly_by_themselves(bench: Bench) -> None:
+    bench.client.send(mavlink.MAVLink_command_long_message(1, 1, REQUEST, 0, 435, 0, 0, 0, 0, 0, 0))
+    bench.bridge.receive()
+    frames = Splitter().feed(bench.client.link.receive())
+    modes = [f.kind.decode(f.payload) for f in frames if f.kind.name == "AVAILABLE_MODES"]
+    properties = {m.custom_mode: m.properties for m in modes}
+    by_itself = {3, 4, 6, 9, 17, 20, 21, 22, 23, 25, 27}
+    assert {number: properties[number] & 4 for number in (0, 1, 2, 5, 16, 3, 4, 6, 9, 21)} == {
+        number: 4 * (number in by_itself) for number in (0, 1, 2, 5, 16, 3, 4, 6, 9, 21)
+    }
+    last = len(modes)
+    for index, result in ((last, 0), (last + 1, 2), (-1, 2), (1, 0)):
+        assert bench.command(REQUEST, 435, index) == result

@@ -10,7 +10,7 @@ import pytest
 from sitl.autopilot.mission.item import MissionItem, home_item
 from sitl.autopilot.terrain.grid import PARTS, Block, around, block_of
 from sitl.bridge.dialect import message
-from sitl.bridge.services.terrain_protocol import BLOCKS_MAX, TerrainService
+from sitl.bridge.services.terrain_protocol import TerrainService
 from sitl.core.mavlink import MavCmd
 from tests.bridge.fakes import HOME, Bench, FakeRover, mavlink
 
@@ -260,8 +260,127 @@ def test_the_oldest_blocks_are_forgotten() -> None:
     bench = Ground()
     service: TerrainService = bench.bridge.get(TerrainService)
     whole = [(1,) * 16] * PARTS
-    for k in range(BLOCKS_MAX + 2):
+    for k in range(258):
         service._keep(Block(k, 0), whole)
-    assert list(service._blocks) == [Block(k, 0) for k in range(2, BLOCKS_MAX + 2)]
+    assert list(service._blocks) == [Block(k, 0) for k in range(2, 258)]
     service._keep(Block(2, 0), whole)
-    assert list(service._blocks)[-1] == Block(2, 0) and len(service._blocks) == BLOCKS_MAX, "what is told again is new"
+    assert list(service._blocks)[-1] == Block(2, 0) and len(service._blocks) == 256, "what is told again is new"
+
+
+# ---------------------------------------------------------------- what is heard, known and told
+
+
+def check(bench: Bench, lat: int, lon: int) -> Any:
+    (answer,) = bench.ask(mavlink.MAVLink_terrain_check_message(lat, lon), "TERRAIN_REPORT")
+    return answer
+
+
+def test_the_last_eight_places_that_were_checked_are_asked_for() -> None:
+    bench = Ground()
+    places = [(HOME[0] + 1_000_000 * k, HOME[1]) for k in range(1, 11)]
+    for place in (*places[:3], *places):
+        check(bench, *place)
+    asked = {(m.lat, m.lon) for m in bench.requests(2.0 * 17)}
+    assert asked == {*around(HOME[0], HOME[1], 100.0), *(block_of(*place, 100.0) for place in places[2:])}
+
+
+def test_a_check_tells_heights_and_counts() -> None:
+    bench = Ground()
+    t, ap = bench.terrain, bench.vehicle.v.autopilot
+    for m in bench.requests(18.0):
+        bench.answer(m, height=650)
+    t.offset, t.difference = 2.0, 4.0
+    ap.home.pos, ap.estimate.pos = (0.0, 0.0, -1.0), (0.0, 0.0, -31.0)
+    answer = check(bench, *HOME[:2])
+    assert (answer.spacing, answer.terrain_height, answer.current_height) == (100, 652.0, 26.0)
+    assert (answer.pending, answer.loaded) == (0, 9 * PARTS)
+    t.pending = t.loaded = 70_000
+    answer = check(bench, 900_000_001, 0)
+    assert (answer.spacing, answer.pending, answer.loaded) == (0, 65_535, 65_535)
+
+
+@pytest.mark.parametrize(
+    ("change", "taken"),
+    [
+        ({}, True), ({"grid_spacing": 99}, False), ({"gridbit": 55}, True), ({"gridbit": 56}, False),
+        ({"lat": 40}, True), ({"lat": 60}, False), ({"lon": -45}, True), ({"lon": -70}, False),
+    ],
+)  # fmt: skip
+def test_parts_that_are_taken(change: dict[str, int], taken: bool) -> None:
+    """Of what was asked for, to TERRAIN_MARGIN: 0.5 m."""
+    bench = Ground()
+    bench.vehicle.parameters["TERRAIN_MARGIN"] = 0.5
+    (m,) = bench.requests(2.0)
+    place = m.lat + change.get("lat", 0), m.lon + change.get("lon", 0), change.get("grid_spacing", 100)
+    for _ in range(2):
+        bench.client.send(mavlink.MAVLink_terrain_data_message(*place, change.get("gridbit", 3), [600] * 16))
+        bench.bridge.receive()
+        assert (bench.terrain.loaded, bench.terrain.pending) == (taken, 9 * PARTS - taken)
+
+
+def test_answers_are_left_out_while_nobody_is_asked() -> None:
+    bench = Ground()
+    (m,) = bench.requests(2.0)
+    bench.command(INTERVAL, REPORT, -1)
+    bench.answer(m)
+    assert bench.terrain.loaded == 0
+
+
+@pytest.mark.parametrize(
+    ("asked", "was_known", "enabled", "rise"),
+    [
+        (False, False, 1.0, 0.0), (False, False, 0.0, None), (True, False, 1.0, None), (True, True, 1.0, 50.0),
+        (False, True, 1.0, 50.0), (True, True, 0.0, None),
+    ],
+)  # fmt: skip
+def test_how_much_higher_the_ground_is_than_at_home(asked: bool, was_known: bool, enabled: float, rise: Any) -> None:
+    bench = Ground()
+    service: TerrainService = bench.bridge.get(TerrainService)
+    service._blocks = dict.fromkeys(around(HOME[0], HOME[1], 100.0), ((650,) * 16,) * PARTS)
+    bench.terrain.asked, bench.terrain.was_known, bench.terrain.home = asked, was_known, 600.0
+    bench.vehicle.v.autopilot.params.TERRAIN.ENABLE = enabled
+    assert service.rise(*HOME[:2]) == rise
+
+
+@pytest.mark.parametrize(("alt", "was_known", "offset"), [(603.0, True, 3.0), (650.0, True, 15.0), (500.0, True, -15.0),
+                                                         (603.0, False, 0.0)])  # fmt: skip
+def test_home_is_as_high_as_the_ground_from_arming_on(alt: float, was_known: bool, offset: float) -> None:
+    """By TERRAIN_OFS_MAX, 15 m."""
+    bench = Ground()
+    bench.vehicle.parameters["TERRAIN_OFS_MAX"] = 15.0
+    bench.terrain.home, bench.terrain.was_known, bench.terrain.offset = 600.0, was_known, 0.0
+    bench.vehicle.v.autopilot.home.alt = alt
+    bench.bridge.get(TerrainService).armed()
+    assert bench.terrain.offset == offset
+
+
+@pytest.mark.parametrize(
+    ("north_m", "plain", "truth", "wanted", "shapes"),
+    [
+        (99.0, True, True, 1.0, True), (-99.0, True, True, 1.0, True), (101.0, True, True, 1.0, False),
+        (0.0, False, True, 1.0, False), (0.0, True, False, 1.0, False), (0.0, True, True, 0.0, False),
+    ],
+)  # fmt: skip
+def test_the_simulated_ground_follows_the_heights_where_it_is_a_plain(
+    north_m: float, plain: bool, truth: bool, wanted: float, shapes: bool
+) -> None:
+    """And where the estimate begins near to where the vehicle was switched on."""
+    bench = Ground()
+    origin = bench.vehicle.v.physics.origin
+    origin.lat, origin.lon = HOME[0] + round(north_m / 0.0111319), HOME[1]
+    bench.vehicle.has_plain_ground, bench.vehicle.has_truth_in_record = plain, truth
+    bench.vehicle.parameters["SIM_TERRAIN"] = wanted
+    assert not bench.terrain.shapes
+    for m in bench.requests(18.0):
+        bench.answer(m, height=650)
+    assert bool(bench.terrain.shapes) == shapes
+    if shapes:
+        assert bench.terrain.start == 650.0
+
+
+def test_heights_outlive_a_reboot() -> None:
+    bench = Ground()
+    bench.answer(bench.requests(2.0)[0], height=650)
+    bench.bridge = bench.bridge.successor()
+    assert bench.bridge.get(TerrainService).height(*HOME[:2]) == 650.0
+    assert bench.bridge.get(TerrainService).height(900_000_001, 0) is None

@@ -113,3 +113,40 @@ def test_knobs_are_read_on_whole_multiples_of_300_ms() -> None:
     b.vehicle.parameters["TUNE"] = 0.0
     b.bridge.parameter_changed("TUNE")
     assert service.due_us == NEVER
+
+
+@pytest.mark.parametrize(
+    ("params", "pulse", "value"),
+    [
+        ({}, 0, 1250.0), ({}, 1, 100.0), ({"RC6_MAX": 1100.0}, 1300, 100.0), ({"RC6_MAX": 1000.0}, 1300, 100.0),
+        ({"TUNE_MIN": 500.0, "TUNE_MAX": 100.0}, 1150, 400.0),
+    ],
+)  # fmt: skip
+def test_pulses_and_ends_of_a_knob(params: dict[str, float], pulse: int, value: float) -> None:
+    """Without a pulse nothing is tuned, and without a travel the knob is at its beginning."""
+    b = bench(**KNOB | params, TUNE=60.0)
+    turn(b, 6, pulse)
+    assert b.vehicle.parameters["LOIT_SPEED"] == value
+
+
+@pytest.mark.parametrize("channel", [1, 16])
+def test_a_knob_may_be_on_any_channel(channel: int) -> None:
+    ends = {f"RC{channel}_{name}": value for name, value in (("OPTION", 219.0), ("MIN", 1100.0), ("MAX", 1300.0))}
+    b = bench(TUNE_MIN=100.0, TUNE_MAX=500.0, TUNE=60.0, **ends)
+    b.vehicle.v.autopilot.rc.channels[channel - 1] = 1200
+    b.run(0.2975)
+    assert b.vehicle.parameters["LOIT_SPEED"] == 1250.0
+    b.run(0.0025)
+    assert b.vehicle.parameters["LOIT_SPEED"] == 300.0
+
+
+def test_a_speed_that_is_refused_is_asked_for_again() -> None:
+    b = bench(**KNOB, TUNE=10.0)
+    b.autopilot.ok = False
+    turn(b, 6, 1200)
+    b.autopilot.ok = True
+    b.run(0.7)
+    assert calls(b, "change_speed") == [(0, 3.0)] * 2
+    b.vehicle.parameters.update({"TUNE_MIN": -500.0, "TUNE_MAX": -100.0})
+    b.run(0.3)
+    assert calls(b, "change_speed")[-1] == (0, 0.0)

@@ -96,7 +96,6 @@ class PhysicsEnd:
         """Count of the frame that was stepped."""
         self.refused = 0
         """Datagrams that were no frames, or of another autopilot."""
-        self._stepped_any = False
         self._received_at = self._answered_at = float("-inf")
         self._reported: set[str] = set()
 
@@ -136,7 +135,7 @@ class PhysicsEnd:
         before, self.count = self.count, servos.number
         known = (servos.number - self._first) & COUNT_MASK < len(self.lines)
         if before is None:
-            asked = Asked.RESTART if servos.number == 0 and self._stepped_any else Asked.STEP
+            asked = Asked.STEP
         elif servos.number == before and not moved:
             if now - self._answered_at < CROSSED_S:
                 return Request(Asked.NOTHING, servos)
@@ -149,7 +148,7 @@ class PhysicsEnd:
 
     def answer(self, lines: Sequence[bytes], now: float) -> None:
         """Keep the answers to the last frame and those that follow, for when one is asked for again."""
-        self.lines, self._answered_at, self._stepped_any = lines, now, True
+        self.lines, self._answered_at = lines, now
         self._first = self.count or 0
 
     def go_on(self, first: int, count: int, lines: Sequence[bytes], now: float) -> None:
@@ -161,7 +160,7 @@ class PhysicsEnd:
             lines: see ``answer``.
             now: wall time [s].
         """
-        self.lines, self._first, self.count, self._stepped_any = lines, first, count, True
+        self.lines, self._first, self.count = lines, first, count
         self._received_at = self._answered_at = now
 
     def repeat(self, now: float) -> bytes:

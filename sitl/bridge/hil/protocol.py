@@ -42,11 +42,10 @@ def within(values: Iterable[float], limits: Iterable[float]) -> bool:
 
 
 def culprit(name: str, fields: Iterable[str], values: Iterable[float], limits: Iterable[float]) -> RefusedError:
-    """The error that names the first value that is not ``within``."""
-    for field, value, limit in zip(fields, values, limits):
-        if not abs(value) < limit:
-            return RefusedError(f"{name}.{field} = {value}: less than {limit:g} in size is needed")
-    return RefusedError(f"{name} cannot be read")
+    """The error that names the first value that is not ``within``; there is one."""
+    rows = zip(fields, values, limits)
+    field, value, limit = next(row for row in rows if not abs(row[1]) < row[2])
+    return RefusedError(f"{name}.{field} = {value}: less than {limit:g} in size is needed")
 
 
 class Sender:

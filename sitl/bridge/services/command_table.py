@@ -399,9 +399,9 @@ def _home_result(bridge: Host, ok: bool) -> int:
 
 def enable_fence(bridge: Host, channel: Channel, command: Command) -> int:
     """207: p1 1 switches fences on, 0 off; p2 which (bits as of FENCE_TYPE), 0 all."""
-    which = int(command.p2) if 0.0 < command.p2 <= ALL else ALL
     if not 0.0 <= command.p1 <= 2.0 or not 0.0 <= command.p2 <= ALL:
         return MavResult.FAILED
+    which = int(command.p2) if command.p2 > 0.0 else ALL
     v = bridge.vehicle.v
     ap = v.autopilot
     if command.p1 >= 1.0 and command.p2 > 0.0 and which & kinds(ap.fence, ap.params.FENCE) == 0:

@@ -539,3 +539,196 @@ def test_rubbish(there: bytes, here: bytes) -> None:
     bench.there.feed(there)
     bench.here.feed(here)
     assert bench.there.ticks == 0 and bench.autopilot.v.time_us == 0
+
+
+# ---------------------------------------------------------------- how long PX4 is waited for
+
+
+def answer(clock: ForeignClock, time_us: int, now_us: int, *, flags: int = 1, armed: bool = True) -> bool:
+    return clock.asks_for_step(Controls(time_us, flags, (0.0,) * 16, 128 * armed), now_us)
+
+
+def in_step(rests: bool = False, *, armed: bool = True) -> ForeignClock:
+    """One whose tick of time 0 was answered, at 10 s of the physics."""
+    clock = ForeignClock(rests)
+    assert answer(clock, 0, 10_000_001, armed=armed) and clock.began_us == 10_000_001
+    return clock
+
+
+def test_before_it_answers_nothing_is_waited_for() -> None:
+    clock = ForeignClock()
+    assert not (clock.holds or clock.is_silent or clock.is_steady) and clock.is_starting(1 << 60)
+    clock.gave_up()
+    assert clock.unanswered == 0
+
+
+@pytest.mark.parametrize(("silences", "steps"), [(0, False), (19, False), (20, True)])
+def test_a_clock_that_is_always_late_is_another_one(silences: int, steps: bool) -> None:
+    clock = ForeignClock()
+    for _ in range(silences):
+        assert not answer(clock, 5_000, 15_000) and clock.holds
+        clock.gave_up()
+        assert not clock.holds
+    assert answer(clock, 7_500, 15_000) == steps and clock.holds
+    assert clock.began_us == 7_500 * steps
+
+
+@pytest.mark.parametrize(
+    ("late_us", "flags", "began_us"), [(1, 1, 1), (0, 1, 0), (-2_500, 1, -2_500), (2_500, 0, 2_500)]
+)
+def test_it_is_in_step_with_its_first_answer_to_the_present_tick(late_us: int, flags: int, began_us: int) -> None:
+    clock = ForeignClock()
+    assert answer(clock, 50_000 - late_us, 50_000, flags=flags) == bool(flags)
+    assert clock.began_us == began_us and clock.holds == bool(flags)
+
+
+@pytest.mark.parametrize(
+    ("time_us", "steps", "began_us"),
+    [(2_500, True, 0), (0, False, 0), (5_000, True, -2_500), (2_501, True, 0), (-1, False, 0)],
+)
+def test_what_is_an_answer_to_the_present_tick(time_us: int, steps: bool, began_us: int) -> None:
+    clock = in_step()
+    assert answer(clock, time_us, 10_002_501) == steps
+    assert clock.began_us == 10_000_001 + began_us
+
+
+def test_each_tick_in_vain_halves_the_wait_and_four_hundred_answers_double_it() -> None:
+    clock = in_step()
+    waits = []
+    for _ in range(8):
+        waits.append(clock.wait_s)
+        clock.gave_up()
+    assert waits == [0.2, 0.1, 0.05, 0.025, 0.0125, 0.00625, 0.005, 0.005] and clock.unanswered == 8
+    for k in range(1, 4_001):
+        assert answer(clock, 20_000 + 2_500 * k, 10_020_001 + 2_500 * k)
+        assert clock.wait_s == min(0.005 * 2 ** (k // 400), 0.2), k
+
+
+@pytest.mark.parametrize("period", [1, 2, 4])
+def test_after_four_answers_alike_ticks_between_are_not_waited_for(period: int) -> None:
+    clock, now = in_step(), 10_000_001
+    waits = []
+    for _ in range(6):
+        for k in range(period):
+            waits.append(clock.wait_s > 0.0)
+            now += 2_500
+            if k < period - 1:
+                clock.gave_up()
+        assert answer(clock, now - 10_000_001, now)
+    assert clock.is_steady == (period == 1)
+    assert waits[: 5 * period] == [True] * (5 * period)
+    assert waits[5 * period :] == [False] * (period - 1) + [True]
+    assert clock.unanswered == 6 * (period - 1)
+
+
+@pytest.mark.parametrize(("armed", "ticks"), [(True, 16), (False, 200)])
+@pytest.mark.parametrize("rests", [True, False])
+def test_time_stands_after_so_many_ticks_in_vain(armed: bool, ticks: int, rests: bool) -> None:
+    clock = in_step(rests, armed=armed)
+    for k in range(ticks):
+        assert not clock.is_silent and clock.holds, k
+        clock.gave_up()
+    assert clock.is_silent and clock.holds == (armed or not rests)
+    answer(clock, 2_500, 10_500_001, armed=armed)
+    assert not clock.is_silent
+
+
+def test_it_is_starting_for_four_seconds() -> None:
+    clock = in_step()
+    assert clock.is_starting(14_000_000) and not clock.is_starting(14_000_001)
+
+
+def test_answers_given_elsewhere_count() -> None:
+    clock = in_step()
+    clock.gave_up()
+    clock.was_answered(3, 10_010_001, False)
+    assert clock.wait_s == 0.1
+    assert not answer(clock, 7_500, 10_007_501, armed=False), "it is the one that was answered"
+    for _ in range(199):
+        clock.gave_up()
+    assert not clock.is_silent, "it is disarmed"
+    clock.gave_up()
+    assert clock.is_silent and clock.unanswered == 201
+
+
+# ---------------------------------------------------------------- what the physics is asked
+
+
+def exchanged(bench: Bench) -> list[str]:
+    """Names of what the autopilot gets for a tick."""
+    data = bench.there.feed(bench.here.controls())
+    bench.here.feed(data)
+    return names(data)
+
+
+def test_the_truth_is_told_at_its_interval(bench: Bench) -> None:
+    def every(interval_us: float) -> int:
+        said = bench.say("COMMAND_LONG", command=511, param1=truth.TRUTH_KIND.id, param2=interval_us)
+        (ack,) = decoded(said, "COMMAND_ACK")
+        assert (ack.command, ack.target_system, ack.target_component) == (511, 1, 1)
+        return ack.result
+
+    exchanged(bench)
+    assert bench.there.truth_due == (0, 0) and every(5_000) == 0
+    assert ["HIL_STATE_QUATERNION" in exchanged(bench) for _ in range(6)] == [True, False] * 3
+    assert bench.there.truth_due == (5_000, 20_000)
+    assert [every(us) for us in (1.1e12, -1.1e12, math.nan, math.inf)] == [2] * 4 and bench.there.truth_due[0] == 5_000
+    assert every(-1.0) == 0 and bench.there.truth_due[0] == 0
+    assert not any("HIL_STATE_QUATERNION" in exchanged(bench) for _ in range(6))
+
+
+def test_commands_of_the_physics_and_what_follows_them(bench: Bench) -> None:
+    exchanged(bench)
+    state = ["COMMAND_ACK", "BATTERY_STATUS", "HIL_SENSOR"]
+    assert names(bench.say("COMMAND_LONG", command=512, param1=107)) == state
+    assert names(bench.say("COMMAND_LONG", command=512, param1=115)) == ["COMMAND_ACK", "HIL_STATE_QUATERNION"]
+    assert decoded(bench.say("COMMAND_LONG", command=31011), "COMMAND_ACK")[0].result == 3, "not as COMMAND_LONG"
+    (ack,) = decoded(bench.say("COMMAND_INT", command=31011, x=-2, y=5), "COMMAND_ACK")
+    assert ack.result == 0 and bench.physics.log[-1] == ("seed", 5 << 32 | 0xFFFFFFFE)
+    assert bench.there.time_us == 2_500
+    assert names(bench.say("COMMAND_LONG", command=246)) == state
+    assert bench.physics.log[-1] == "power on" and bench.there.time_us == 0
+
+
+@pytest.mark.parametrize("last", [False, True])
+def test_ticks_that_were_answered_elsewhere_have_been(bench: Bench, last: bool) -> None:
+    exchanged(bench)
+    out = bench.there.go_on_with(5, True, 77_000, last)
+    assert names(out)[-1:] == ["HIL_SENSOR"] * last
+    assert (bench.there.time_us, bench.there.ticks, bench.there.truth_due) == (15_000, 6, (0, 77_000))
+
+
+def test_it_is_said_once_that_a_tick_was_not_answered() -> None:
+    bench = Bench()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    assert driven(bench, 0) != b"" and bench.there.wait_s == 0.2
+    bench.there.go_on()
+    bench.there.go_on()
+    assert bench.there.notes == [
+        "the autopilot has not answered the tick at 0.0025 s in 200 ms: time goes on without it, and this is not said "
+        "again"
+    ]
+    assert bench.there.unanswered == 2 and bench.there.ticks == 3
+    for k in range(14):
+        assert bench.there.wait_s is not None, k
+        bench.there.go_on()
+    bench.say("HIL_ACTUATOR_CONTROLS", time_usec=1, controls=[0.4], flags=1, mode=129)
+    for k in range(16):
+        assert bench.there.wait_s is not None, k
+        bench.there.go_on()
+    assert bench.there.wait_s is None, "time stands"
+
+
+def test_what_is_steady_waits_for_nothing_but_the_next_answer() -> None:
+    bench = Bench()
+    bench.say("HEARTBEAT", autopilot=PX4)
+    while bench.there.time_us < 4_000_000:
+        assert not bench.there.is_steady and bench.there.is_starting
+        driven(bench, bench.there.time_us)
+    assert bench.there.is_steady and not bench.there.is_starting
+    bench.there.move_sticks((1500,))
+    assert not bench.there.is_steady
+    driven(bench, bench.there.time_us)
+    assert bench.there.is_steady
+    bench.there.feed(b"\xfd\x09")
+    assert not bench.there.is_steady

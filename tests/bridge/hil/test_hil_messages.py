@@ -250,6 +250,24 @@ def test_a_scan_of_another_lidar_is_refused() -> None:
             taker.read(ranging.SCAN.payload(name=b"LASER", data=data, array_id=number))
 
 
+@pytest.mark.parametrize(("x", "taken"), [(0.0, True), (math.inf, True), (-0.01, False), (math.nan, False)])
+def test_a_range_is_no_less_than_nothing(x: float, taken: bool) -> None:
+    payload = ranging.VECTOR.payload(name=b"RANGE", x=x)
+    if taken:
+        assert ranging.RangeReader.read(payload) == x
+    else:
+        with pytest.raises(RefusedError, match="DEBUG_VECT RANGE: x = "):
+            ranging.RangeReader.read(payload)
+    assert ranging.RangeReader.read(ranging.VECTOR.payload(name=b"OTHER", x=x)) is None
+
+
+@pytest.mark.parametrize(("distance", "reading"), [(4999, 49.99), (5000, 50.0), (5001, math.inf)])
+def test_a_distance_beyond_the_range_is_infinite(distance: int, reading: float) -> None:
+    fields = {"current_distance": distance, "max_distance": 5000}
+    assert ranging.DistanceReader.read(ranging.DISTANCE.payload(orientation=25, **fields)) == pytest.approx(reading)
+    assert ranging.DistanceReader.read(ranging.DISTANCE.payload(orientation=24, **fields)) is None
+
+
 def test_a_scan_with_a_part_missing_is_not_shown() -> None:
     source = Vehicle()
     taker = ranging.ScanReader(source.v, 100)
@@ -294,6 +312,10 @@ def test_parts_of_the_rotors_range(frame: str, lowest: float, highest: float) ->
     assert span == pytest.approx((lowest, highest))
     given = controls.Controls(1, 1, (0.0, 0.5, 1.0), 129)
     assert controls.stretch(given, *span).outputs == pytest.approx((lowest, 0.5 * (lowest + highest), highest))
+
+
+def test_an_airframe_without_a_range_has_all_of_it() -> None:
+    assert controls.rotor_range(object()) == (0.0, 1.0)
 
 
 def test_truth() -> None:

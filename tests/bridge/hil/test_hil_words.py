@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from sitl.bridge.dialect import message
 from sitl.bridge.frame import Splitter
-from sitl.bridge.hil.autopilot_end import TAKEN, WAITING, AutopilotEnd
+from sitl.bridge.hil.autopilot_end import ELSEWHERE, TAKEN, WAITING, AutopilotEnd
 from sitl.bridge.hil.protocol import Sender
 from tests.bridge.hil.hil_bench import Bench, Vehicle
 
@@ -95,6 +95,26 @@ def test_a_parameter_that_the_physics_took_is_told_as_one_that_nobody_counts(ben
     ((_, _, name, told),) = heard(bench.there.feed(SENDER.frame(kind, kind.payload(**fields))))
     assert (name, told.param_id, told.param_value) == ("PARAM_VALUE", b"SIM_WIND_SPD", 3.5)
     assert (told.param_type, told.param_count, told.param_index) == (mavlink.MAV_PARAM_TYPE_REAL32, 1, 65535)
+
+
+@pytest.mark.parametrize("seed", [0, 1 << 31, (1 << 32) - 1, 1 << 63, (1 << 64) - 1])
+def test_a_seed_has_64_bits(bench: Bench, seed: int) -> None:
+    bench.here.reseed(seed)
+    bench.here.feed(bench.there.feed(bench.here.controls()))
+    assert bench.physics.log[0] == ("seed", seed)
+
+
+def test_the_physics_is_a_peripheral_of_the_same_system(bench: Bench) -> None:
+    assert {(f.system, f.component) for f in Splitter().feed(bench.there.feed(bench.here.controls()))} == {(1, 158)}
+
+
+def test_of_what_comes_together_the_most_counts(bench: Bench) -> None:
+    """A tick, and behind it the same once more or one of another world."""
+    tick = bench.there.feed(bench.here.controls())
+    assert bench.here.feed(tick + tick) == TAKEN and bench.here.repeated == 1
+    bench.here.controls()
+    bench.autopilot.v.time_us += 2500
+    assert bench.here.feed(tick) == ELSEWHERE
 
 
 @pytest.mark.parametrize("system, component", [(1, 1), (7, 191)])

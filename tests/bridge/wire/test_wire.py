@@ -182,6 +182,24 @@ def test_version_1_leaves_out_what_it_cannot_carry(channel: Channel, v: Copter) 
     assert (channel.port.sent, channel.port.out_size) == (0, 0)
 
 
+@pytest.mark.parametrize(
+    ("count", "size", "fits"), [(0, 0, True), (159, 0, True), (160, 0, False), (0, 5877, True), (0, 5878, False)]
+)
+def test_the_longest_frame_fits_or_waits(channel: Channel, count: int, size: int, fits: bool) -> None:
+    """267 bytes of 6144, and 160 frames."""
+    channel.port.out_count, channel.port.out_size = count, size
+    assert frames.has_space(channel.port) == fits
+
+
+def test_who_speaks_version_1_alone_is_answered_so(channel: Channel) -> None:
+    kind = message("PING")
+    port, versions = channel.port, []
+    for encode in (encode_v1, encode_v1, encode_v2, encode_v1):
+        heard(channel, encode(kind, kind.payload(seq=1), 0, 255, 190), [])
+        versions.append((port.version, bool(port.received_v2)))
+    assert versions == [(1, False), (1, False), (2, True), (2, True)] and port.received == 4
+
+
 def test_nothing_to_say_is_no_frame(channel: Channel, v: Copter) -> None:
     assert streams.send(v, channel.port, channel.address, message("BATTERY_STATUS").id, build)
     assert channel.port.out_count == 0 and channel.port.sequence == 0
@@ -240,6 +258,27 @@ def test_what_the_shell_builds_waits_for_it_in_its_place(channel: Channel, v: Co
     streams.put_off(port, 253, v.time_us)
     assert streams.send_due(v, port, channel.address, build)
     assert port.out_count == 1
+
+
+def test_a_clock_that_was_set_moves_all_streams_and_one_that_was_dealt_with_itself_alone(channel: Channel) -> None:
+    port = channel.port
+    for number, interval in ((1, 20_000), (2, 30_000)):
+        streams.set_interval(port, number, interval, 0, False)
+    streams.put_off(port, 1, 20_000)
+    assert port.stream_due_us[:2].tolist() == [40_000, 30_000] and port.next_us == 30_000
+    streams.time_was_set(port, 105_000)
+    assert port.stream_due_us[:2].tolist() == [120_000, 120_000] and port.next_us == 120_000
+    streams.set_interval(port, 1, 20_000, 119_000, False)
+    assert port.stream_due_us[:2].tolist() == [120_000, 120_000], "nothing has changed"
+
+
+@pytest.mark.parametrize(("now_us", "sent", "due_us"), [(9_999, 0, 10_000), (10_000, 1, 20_000)])
+def test_a_port_is_sent_what_is_due(channel: Channel, v: Copter, now_us: int, sent: int, due_us: int) -> None:
+    streams.set_interval(channel.port, 30, 10_000, 0, False)
+    v.time_us = now_us
+    assert streams.next_due(channel.address, 1) == 10_000
+    assert streams.send_all_due(v, channel.address, 1, build)
+    assert (channel.port.out_count, channel.port.next_us) == (sent, due_us)
 
 
 def test_too_many_streams_are_an_error(channel: Channel) -> None:
@@ -321,6 +360,32 @@ def test_the_core_stops_at_a_message_of_the_shell_and_goes_on_behind_it(channel:
     assert v.autopilot.modes.number == 355
     receive_port(v, channel.address, take, target)
     assert (channel.port.frame_end, v.autopilot.modes.number, channel.port.in_size) == (0, 455, 1)
+
+
+def test_a_port_has_space_for_1024_bytes(channel: Channel) -> None:
+    assert not channel.takes(bytes(1025)) and channel.port.in_size == 0
+    assert channel.takes(bytes(1000)) and channel.takes(b"x" * 24) and not channel.takes(b"y")
+    frames.next_frame(channel.port, channel.address)
+    keep_rest(channel.port, channel.address)
+    assert channel.feed(bytes(1030)) == bytes(6) and channel.port.in_size == 1024, "those that there is no space for"
+
+
+def test_what_the_core_made_comes_before_what_the_shell_answers(channel: Channel, v: Copter) -> None:
+    """And after what the shell has queued already."""
+    kind = message("ATTITUDE")
+    given: list[bytes] = []
+    channel.peer.accept = given.append  # type: ignore[method-assign]
+    channel.peer.flush = lambda: given.append(b"flushed")  # type: ignore[method-assign]
+    channel.put(kind, kind.payload())
+    streams.send(v, channel.port, channel.address, kind.id, build)
+    channel.put(kind, kind.payload())
+    assert [frame[4] for frame in channel.peer.outbox] == [0, 1, 2]
+    streams.send(v, channel.port, channel.address, kind.id, build)
+    channel.hand_over()
+    assert given[0] == b"flushed" and given[1][4] == 3 and channel.port.out_count == channel.port.out_size == 0
+    channel.peer.outbox.clear()
+    channel.hand_over()
+    assert given[2:] == [b""]
 
 
 def test_a_watched_port_stops_at_every_frame(channel: Channel, v: Copter) -> None:
