@@ -6,10 +6,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sitl.autopilot.aux_switch import LOW
+from sitl.bridge.dialect import message
 from sitl.bridge.services import command_table
+from sitl.bridge.services.command import Entry, from_long
 from sitl.bridge.services.mount import MountService
 from tests.bridge.fakes import HOME, Bench, FakeRover, FakeVehicle
 from tests.bridge.test_commands import command_int
@@ -368,3 +371,23 @@ def test_a_fence_that_there_is_not_is_not_switched_on(located: Bench, params: An
     """FENCE_TYPE 3: height and circle."""
     located.vehicle.parameters.update({"FENCE_TYPE": 3.0})
     assert located.command(207, *params) == result
+
+
+@pytest.mark.parametrize(
+    ("place", "taken"),
+    [
+        ((90.0, 180.0, 83_000.0), True), ((-90.0, -180.0, -83_000.0), True), ((90.1, 0.0, 0.0), False),
+        ((-90.1, 0.0, 0.0), False), ((0.0, 180.1, 0.0), False), ((0.0, -180.1, 0.0), False),
+        ((0.0, 0.0, 83_001.0), False), ((0.0, 0.0, -83_001.0), False),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("off_earth", [False, True])
+def test_locations_in_degrees_are_on_earth(place: Any, taken: bool, off_earth: bool) -> None:
+    """Of commands that leave it to the protocol; the others answer such a location by themselves."""
+    kind = message("COMMAND_LONG")
+    fields = kind.decode(kind.payload(command=179, param5=place[0], param6=place[1], param7=place[2]))
+    entry = Entry(lambda *what: ACCEPTED, has_location=True, off_earth=off_earth)
+    found = from_long(fields, entry)
+    assert (found is not None) == (taken or (off_earth and abs(place[2]) < 83_000.5))
+    if found is not None:
+        assert (found.lat, found.lon) == tuple(round(1e7 * float(np.float32(degrees))) for degrees in place[:2])

@@ -262,8 +262,11 @@ class Connection:
 
     def __init__(self, room: float = 0.0) -> None:
         self.room, self.sent, self.incoming = room, list[int](), list[Any]()
+        self.breaks: OSError | None = None
 
     def send(self, data: bytes) -> int:
+        if self.breaks:
+            raise self.breaks
         if self.room <= 0:
             raise BlockingIOError
         size = int(min(len(data), self.room))
@@ -305,6 +308,17 @@ def test_a_client_that_does_not_read_is_spared_and_then_dropped(size: int, conge
     sock.room = 1e9
     peer.flush()
     assert sock.sent == ([] if dropped else [65536] * (size // 65536) + [size % 65536] * (size % 65536 > 0))
+
+
+@pytest.mark.parametrize(("error", "why"), [(OSError(32, "Broken pipe"), "Broken pipe"), (OSError("odd"), "odd")])
+def test_a_connection_that_breaks_while_something_is_sent_is_lost(error: OSError, why: str) -> None:
+    peer, sock, link = connected(room=1e9)
+    sock.breaks = error
+    peer.write(b"a")
+    peer.flush()
+    peer.write(b"b")
+    peer.flush()
+    assert peer.closed and link.gone == [f"connection lost: {why}"] and sock.sent == []
 
 
 def test_what_a_socket_takes_in_part_goes_on_later() -> None:
