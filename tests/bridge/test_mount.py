@@ -255,7 +255,7 @@ def test_angles_of_a_mission_that_are_none_leave_it_as_it_is(numbers: Any) -> No
     b = bench()
     assert b.command(CONTROL, -30, 0, 45, 0, 0, 0, 2) == ACCEPTED
     b.bridge.carry_out(MissionItem(CONTROL, p1=numbers[0], p2=numbers[1], p3=numbers[2]))
-    assert pulses(b)[:2] == (1536, 1600)[::-1]
+    assert pulses(b)[:2] == (1600, 1536)
 
 
 @pytest.mark.parametrize(
