@@ -137,7 +137,9 @@ def test_it_is_run_from_the_command_line_and_its_physics_has_wind(tmp_path, prog
 
 def test_a_script_is_run_on_its_clock(tmp_path, program):
     (tmp_path / "script.py").write_text(
-        "import sys, time\nfrom pymavlink import mavutil\n"
+        "import os, sys, time\n"
+        "os.environ['MAVLINK20'] = '1'  # else its dialect is loaded, and compiled, at the first message\n"
+        "from pymavlink import mavutil\n"
         "link = mavutil.mavlink_connection(sys.argv[1])\n"
         "first = link.recv_match(type='ATTITUDE', blocking=True).time_boot_ms\n"
         "began = time.monotonic()\n"
